@@ -1,0 +1,3 @@
+//! From faces to half-edges.
+
+pub(crate) mod assemble;

@@ -1,0 +1,54 @@
+//! What can go wrong.
+
+use crate::{Cancelled, FaceId, NotManifold, VertexId};
+
+/// Why a function of this crate gave no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The caller asked the computation to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+
+    /// A face names a vertex that does not exist.
+    #[error("{face} names {vertex}, but there are only {vertex_count} vertices")]
+    VertexOutOfRange {
+        /// The first such face.
+        face: FaceId,
+        /// The vertex it names.
+        vertex: VertexId,
+        /// How many vertices there are.
+        vertex_count: usize,
+    },
+
+    /// More elements than 32-bit ids can count.
+    #[error("{count} {kind} are more than a mesh can hold (2³² − 2)")]
+    TooMany {
+        /// What is counted.
+        kind: &'static str,
+        /// How many there are.
+        count: usize,
+    },
+
+    /// The faces do not form an oriented manifold.
+    #[error("{0}; `repair` can mend it")]
+    NotManifold(#[from] NotManifold),
+
+    /// An option has a value outside its range.
+    #[error("option `{name}` is {value}, but must be {expected}")]
+    InvalidOption {
+        /// The option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        expected: &'static str,
+    },
+}
+
+impl Error {
+    /// The error for an option out of range.
+    pub fn option(name: &'static str, value: f64, expected: &'static str) -> Self {
+        Error::InvalidOption { name, value, expected }
+    }
+}

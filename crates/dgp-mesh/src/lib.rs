@@ -1,0 +1,48 @@
+//! A half-edge mesh that is always a valid oriented 2-manifold with boundary, and what stands around it.
+//!
+//! | topic | items |
+//! |---|---|
+//! | ids and data | [`VertexId`] [`HalfedgeId`] [`EdgeId`] [`FaceId`] [`CornerId`], [`VertexMap`] …, [`VertexSet`] …, [`AttributeTable`] |
+//! | representations | [`IndexedFaceSet`] with its [`FaceList`], [`Connectivity`], [`Mesh`] |
+//! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
+//!
+//! ```
+//! use dgp_mesh::{DVec3, FaceList, IndexedFaceSet, Mesh, VertexId};
+//!
+//! let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let faces = FaceList::from_indices(&[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+//! let mesh = Mesh::new(&IndexedFaceSet::new(corners, faces)?)?;
+//! let neighbors = mesh.vertex_neighbors(VertexId::new(0));
+//! assert_eq!(neighbors.map(|w| mesh.position(w)).sum::<DVec3>(), DVec3::ONE);
+//! # Ok::<(), dgp_mesh::Error>(())
+//! ```
+
+mod attribute;
+mod build;
+mod connectivity;
+mod error;
+mod face_list;
+mod id;
+mod indexed;
+mod map;
+mod mesh;
+mod navigate;
+pub mod parallel;
+mod progress;
+mod set;
+
+pub use glam::{DMat3, DVec2, DVec3};
+
+pub use attribute::{
+    AttributeColumn, AttributeTable, AttributeValue, COLOR, Color, GROUP, Label, MATERIAL, NORMAL,
+    Normal, OBJECT, SMOOTHING, UV,
+};
+pub use connectivity::{Connectivity, NotManifold};
+pub use error::Error;
+pub use face_list::FaceList;
+pub use id::{CornerId, EdgeId, FaceId, HalfedgeId, Id, MAX_ELEMENTS, VertexId};
+pub use indexed::IndexedFaceSet;
+pub use map::{CornerMap, EdgeMap, FaceMap, HalfedgeMap, IdMap, VertexMap};
+pub use mesh::{Attributes, Mesh};
+pub use progress::{Callback, Cancelled, Progress};
+pub use set::{EdgeSet, FaceSet, HalfedgeSet, IdSet, VertexSet};
