@@ -22,12 +22,14 @@ pub enum Error {
     },
 
     /// More elements than 32-bit ids can count.
-    #[error("{count} {kind} are more than a mesh can hold (2³² − 2)")]
+    #[error("{count} {kind} are more than the {limit} a mesh can hold; cut it into parts")]
     TooMany {
         /// What is counted.
         kind: &'static str,
         /// How many there are.
         count: usize,
+        /// How many there can be.
+        limit: usize,
     },
 
     /// The faces do not form an oriented manifold.

@@ -33,6 +33,9 @@ enum Starts {
 }
 
 impl FaceList {
+    /// The largest number of corners a list can have and still become a mesh: 2³¹.
+    pub const MAX_CORNERS: usize = 1 << 31;
+
     /// No faces.
     pub fn new() -> Self {
         FaceList::default()
@@ -128,6 +131,23 @@ impl FaceList {
         self.range(f).map(CornerId::new)
     }
 
+    /// The first corner of face `f`.
+    #[inline]
+    pub fn face_start(&self, f: FaceId) -> CornerId {
+        CornerId::new(self.range(f).start)
+    }
+
+    /// The face that corner `c` belongs to, by binary search.
+    pub fn corner_face(&self, c: CornerId) -> FaceId {
+        match &self.starts {
+            Starts::Every(degree) => FaceId::new(c.index() / *degree as usize),
+            // Of faces without corners that start here too, the last start is the one with a corner.
+            Starts::At(starts) => {
+                FaceId::new(starts.partition_point(|&start| start as usize <= c.index()) - 1)
+            }
+        }
+    }
+
     /// How many corners face `f` has.
     #[inline]
     pub fn degree(&self, f: FaceId) -> usize {
@@ -178,17 +198,24 @@ impl FaceList {
     /// An error if a face names a vertex that is not among `vertex_count`, or if there are more
     /// elements than ids can count.
     pub fn validate(&self, vertex_count: usize) -> Result<(), Error> {
-        for (kind, count) in [("vertices", vertex_count), ("corners", self.corners.len())] {
-            if count > MAX_ELEMENTS {
-                return Err(Error::TooMany { kind, count });
+        let limits = [
+            ("vertices", vertex_count, MAX_ELEMENTS),
+            ("corners", self.corners.len(), FaceList::MAX_CORNERS),
+        ];
+        for (kind, count, limit) in limits {
+            if count > limit {
+                return Err(Error::TooMany { kind, count, limit });
             }
         }
-        let Some(bad) = self.corners.iter().position(|v| v.index() >= vertex_count) else {
+        // Without a branch per corner; ids are ordered as their indices.
+        let largest = self.corners.iter().copied().max();
+        if largest.is_none_or(|v| v.index() < vertex_count) {
             return Ok(());
-        };
-        let face = (0..self.len()).map(FaceId::new).find(|&f| self.range(f).contains(&bad));
-        let face = face.unwrap_or(FaceId::new(0));
-        Err(Error::VertexOutOfRange { face, vertex: self.corners[bad], vertex_count })
+        }
+        let bad = self.corners.iter().position(|v| v.index() >= vertex_count);
+        let corner = CornerId::new(bad.expect("the largest vertex is out of range"));
+        let (face, vertex) = (self.corner_face(corner), self.vertex(corner));
+        Err(Error::VertexOutOfRange { face, vertex, vertex_count })
     }
 
     #[inline]
