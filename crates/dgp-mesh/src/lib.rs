@@ -4,6 +4,7 @@
 //! |---|---|
 //! | ids and data | [`VertexId`] [`HalfedgeId`] [`EdgeId`] [`FaceId`] [`CornerId`], [`VertexMap`] …, [`VertexSet`] …, [`AttributeTable`] |
 //! | representations | [`IndexedFaceSet`] with its [`FaceList`], [`Connectivity`], [`Mesh`] |
+//! | first meshes | [`shapes`] |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
 //!
 //! ```
@@ -30,6 +31,7 @@ mod navigate;
 pub mod parallel;
 mod progress;
 mod set;
+pub mod shapes;
 
 pub use glam::{DMat3, DVec2, DVec3};
 
