@@ -36,6 +36,15 @@ pub enum Error {
     #[error("{0}; `repair` can mend it")]
     NotManifold(#[from] NotManifold),
 
+    /// A triangle mesh is needed.
+    #[error("{face} has {degree} corners; triangulate the mesh first")]
+    NotTriangle {
+        /// The first face that is no triangle.
+        face: FaceId,
+        /// How many corners it has.
+        degree: usize,
+    },
+
     /// An option has a value outside its range.
     #[error("option `{name}` is {value}, but must be {expected}")]
     InvalidOption {

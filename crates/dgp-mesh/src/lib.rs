@@ -5,6 +5,8 @@
 //! | ids and data | [`VertexId`] [`HalfedgeId`] [`EdgeId`] [`FaceId`] [`CornerId`], [`VertexMap`] …, [`VertexSet`] …, [`AttributeTable`] |
 //! | representations | [`IndexedFaceSet`] with its [`FaceList`], [`Connectivity`], [`Mesh`] |
 //! | first meshes | [`shapes`] |
+//! | measures | [`measure`]: lengths, areas, angles, normals, volume, boxes |
+//! | topology | [`topology`]: components, holes, Euler characteristic, genus |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
 //!
 //! ```
@@ -26,12 +28,14 @@ mod face_list;
 mod id;
 mod indexed;
 mod map;
+pub mod measure;
 mod mesh;
 mod navigate;
 pub mod parallel;
 mod progress;
 mod set;
 pub mod shapes;
+pub mod topology;
 
 pub use glam::{DMat3, DVec2, DVec3};
 

@@ -1,0 +1,44 @@
+//! Coordinates near zero and one: where sums over a whole mesh are formed.
+
+use glam::DVec3;
+
+use super::{Surface, bounding_box, scale::Scale};
+
+/// The middle of a mesh and the power of two of its size.
+///
+/// Sums of products of coordinates lose digits far from the origin and leave the range of f64 for
+/// very large and small meshes. In this frame all coordinates are below 2.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    /// The middle of the bounding box, scaled down.
+    center: DVec3,
+    scale: Scale,
+}
+
+impl Frame {
+    /// The frame of the vertices of `surface` that are finite.
+    pub(crate) fn of(surface: &impl Surface) -> Self {
+        let Some(bounds) = bounding_box(surface) else {
+            return Frame { center: DVec3::ZERO, scale: Scale::of(0.0) };
+        };
+        // Half the size cannot overflow, the size can.
+        let half = 0.5 * bounds.max - 0.5 * bounds.min;
+        let mut scale = Scale::of(half.max_element());
+        if half == DVec3::ZERO {
+            scale = Scale::of(bounds.max.abs().max_element());
+        }
+        Frame { center: bounds.center() * scale.down, scale }
+    }
+
+    /// `point` in this frame.
+    #[inline]
+    pub(crate) fn local(&self, point: DVec3) -> DVec3 {
+        point * self.scale.down - self.center
+    }
+
+    /// A length, area, volume, … (by `power`) of this frame in space.
+    #[inline]
+    pub(crate) fn measure(&self, local: f64, power: u32) -> f64 {
+        (0..power).fold(local, |x, _| x * self.scale.up)
+    }
+}
