@@ -277,6 +277,28 @@ impl<I: Id> AttributeTable<I> {
         }
     }
 
+    /// The columns whose values differ within one of the `pairs` of elements.
+    pub fn differing(&self, pairs: impl Iterator<Item = [I; 2]>) -> Vec<String> {
+        if self.columns.is_empty() {
+            return Vec::new();
+        }
+        let pairs: Vec<_> = pairs.map(|pair| pair.map(I::index)).collect();
+        let columns = self.columns.iter().filter(|(_, column)| column.differs(&pairs));
+        columns.map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Takes over the columns of `other` whose name is `wanted`, in place of those with the same name.
+    ///
+    /// # Panics
+    /// If the tables are not of the same length.
+    pub fn append(&mut self, other: AttributeTable<I>, wanted: impl Fn(&str) -> bool) {
+        assert_eq!(other.len, self.len, "tables of the same length");
+        for (name, column) in other.columns.into_iter().filter(|(name, _)| wanted(name)) {
+            self.remove(&name);
+            self.columns.push((name, column));
+        }
+    }
+
     /// The table of `len` elements whose element `j` has the values of `source(j)`, or default
     /// values where that is `None`. The new elements may be of another kind.
     pub fn gather<J: Id>(
@@ -358,6 +380,7 @@ trait Column: Send + Sync {
         source: &(dyn Fn(usize) -> Option<usize> + Sync),
     ) -> Box<dyn Column>;
     fn equals(&self, other: &dyn Column) -> bool;
+    fn differs(&self, pairs: &[[usize; 2]]) -> bool;
     fn boxed_clone(&self) -> Box<dyn Column>;
     fn type_name(&self) -> &'static str;
     fn as_any(&self) -> &dyn Any;
@@ -389,6 +412,10 @@ impl<T: AttributeValue> Column for Vec<T> {
 
     fn equals(&self, other: &dyn Column) -> bool {
         other.as_any().downcast_ref::<Vec<T>>() == Some(self)
+    }
+
+    fn differs(&self, pairs: &[[usize; 2]]) -> bool {
+        pairs.iter().any(|&[i, j]| self[i] != self[j])
     }
 
     fn boxed_clone(&self) -> Box<dyn Column> {

@@ -1,6 +1,6 @@
 //! What can go wrong.
 
-use crate::{Cancelled, FaceId, NotManifold, VertexId};
+use crate::{Cancelled, EdgeId, FaceId, NotManifold, VertexId};
 
 /// Why a function of this crate gave no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,6 +19,26 @@ pub enum Error {
         vertex: VertexId,
         /// How many vertices there are.
         vertex_count: usize,
+    },
+
+    /// An edge ends at a vertex that does not exist.
+    #[error("{edge} ends at {vertex}, but there are only {vertex_count} vertices")]
+    EdgeOutOfRange {
+        /// The first such edge.
+        edge: EdgeId,
+        /// The vertex it names.
+        vertex: VertexId,
+        /// How many vertices there are.
+        vertex_count: usize,
+    },
+
+    /// The sides of a face do not follow each other.
+    #[error("side {side} of {face} does not start where the one before it ends")]
+    BrokenLoop {
+        /// The face.
+        face: FaceId,
+        /// Which of its sides, counted from 0.
+        side: usize,
     },
 
     /// More elements than 32-bit ids can count.

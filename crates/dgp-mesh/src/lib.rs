@@ -3,10 +3,11 @@
 //! | topic | items |
 //! |---|---|
 //! | ids and data | [`VertexId`] [`HalfedgeId`] [`EdgeId`] [`FaceId`] [`CornerId`], [`VertexMap`] …, [`VertexSet`] …, [`AttributeTable`] |
-//! | representations | [`IndexedFaceSet`] with its [`FaceList`], [`Connectivity`], [`Mesh`] |
 //! | first meshes | [`shapes`] |
 //! | measures | [`measure`]: lengths, areas, angles, normals, volume, boxes |
 //! | topology | [`topology`]: components, holes, Euler characteristic, genus |
+//! | representations | [`PolygonSoup`], [`IndexedFaceSet`] with its [`FaceList`], [`EdgeList`], [`Connectivity`], [`Mesh`] |
+//! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
 //!
 //! ```
@@ -22,7 +23,9 @@
 
 mod attribute;
 mod build;
+mod check;
 mod connectivity;
+mod edge_list;
 mod error;
 mod face_list;
 mod id;
@@ -36,6 +39,8 @@ mod progress;
 mod set;
 pub mod shapes;
 pub mod topology;
+mod soup;
+mod weld;
 
 pub use glam::{DMat3, DVec2, DVec3};
 
@@ -44,6 +49,7 @@ pub use attribute::{
     Normal, OBJECT, SMOOTHING, UV,
 };
 pub use connectivity::{Connectivity, NotManifold};
+pub use edge_list::EdgeList;
 pub use error::Error;
 pub use face_list::FaceList;
 pub use id::{CornerId, EdgeId, FaceId, HalfedgeId, Id, MAX_ELEMENTS, VertexId};
@@ -52,3 +58,5 @@ pub use map::{CornerMap, EdgeMap, FaceMap, HalfedgeMap, IdMap, VertexMap};
 pub use mesh::{Attributes, Mesh};
 pub use progress::{Callback, Cancelled, Progress};
 pub use set::{EdgeSet, FaceSet, HalfedgeSet, IdSet, VertexSet};
+pub use soup::PolygonSoup;
+pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};

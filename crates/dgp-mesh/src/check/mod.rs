@@ -1,0 +1,3 @@
+//! What is wrong with faces.
+
+pub(crate) mod union;
