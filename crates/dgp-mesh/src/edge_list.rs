@@ -53,7 +53,7 @@ impl EdgeList {
         let vertex_count = positions.len();
         for (kind, count) in [("vertices", vertex_count), ("half-edges", 2 * edges.len())] {
             if count > MAX_ELEMENTS {
-                return Err(Error::TooMany { kind, count });
+                return Err(Error::TooMany { kind, count, limit: MAX_ELEMENTS });
             }
         }
         for (edge, ends) in edges.iter() {
@@ -84,8 +84,9 @@ impl EdgeList {
     pub fn push_face(&mut self, sides: &[HalfedgeId]) -> Result<FaceId, Error> {
         let face = FaceId::new(self.face_count());
         let count = self.loops.len() + sides.len();
-        if count > MAX_ELEMENTS {
-            return Err(Error::TooMany { kind: "corners", count });
+        let limit = FaceList::MAX_CORNERS;
+        if count > limit {
+            return Err(Error::TooMany { kind: "corners", count, limit });
         }
         for (k, &side) in sides.iter().enumerate() {
             let before = sides[(k + sides.len() - 1) % sides.len()];

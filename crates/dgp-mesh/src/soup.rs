@@ -44,9 +44,10 @@ impl PolygonSoup {
     /// Adds a face whose data have default values; [`Error::TooMany`] if ids cannot count it.
     pub fn push(&mut self, face: &[DVec3]) -> Result<FaceId, Error> {
         let (faces, corners) = (self.starts.len(), self.positions.len() + face.len());
-        for (kind, count) in [("faces", faces), ("corners", corners)] {
-            if count > MAX_ELEMENTS {
-                return Err(Error::TooMany { kind, count });
+        let limits = [("faces", faces, MAX_ELEMENTS), ("corners", corners, FaceList::MAX_CORNERS)];
+        for (kind, count, limit) in limits {
+            if count > limit {
+                return Err(Error::TooMany { kind, count, limit });
             }
         }
         for &position in face {
@@ -171,7 +172,8 @@ mod tests {
     fn data_per_vertex_become_data_per_corner() {
         let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
         let mut set =
-            IndexedFaceSet::new(positions, FaceList::from_indices(&[[0, 1, 2], [2, 1, 0]])).unwrap();
+            IndexedFaceSet::new(positions, FaceList::from_indices(&[[0, 1, 2], [2, 1, 0]]))
+                .unwrap();
         set.vertex_attributes.insert("height", vec![1.0, 2.0, 3.0]);
         let soup = PolygonSoup::from_indexed(&set);
         let heights = soup.corner_attributes.get::<f64>("height").unwrap();

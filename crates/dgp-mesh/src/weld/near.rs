@@ -47,7 +47,8 @@ pub(super) fn weld(
     progress.report(0.5)?;
     search.within(0, 0, 0)?;
     let mut union = search.union;
-    let classes = table::from_firsts(&(0..scaled.len()).map(|i| union.find(i) as u32).collect::<Vec<_>>());
+    let classes =
+        table::from_firsts(&(0..scaled.len()).map(|i| union.find(i) as u32).collect::<Vec<_>>());
     Ok(Welding {
         vertices: exact.vertices.map(|&v| classes.vertices[v]),
         originals: classes.originals.map(|&v| exact.originals[v]),
