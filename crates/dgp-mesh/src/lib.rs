@@ -38,8 +38,8 @@ pub mod parallel;
 mod progress;
 mod set;
 pub mod shapes;
-pub mod topology;
 mod soup;
+pub mod topology;
 mod weld;
 
 pub use glam::{DMat3, DVec2, DVec3};
