@@ -1,6 +1,6 @@
 //! Faces as lists of vertices, one after the other.
 
-use std::{fmt, ops::Range};
+use std::{fmt, iter, ops::Range};
 
 use crate::{CornerId, Error, FaceId, MAX_ELEMENTS, VertexId};
 
@@ -53,6 +53,24 @@ impl FaceList {
     pub fn from_corners(corners: Vec<VertexId>, degree: usize) -> Self {
         assert!(degree > 0 && corners.len().is_multiple_of(degree), "faces of {degree} corners");
         FaceList { corners, starts: Starts::Every(degree as u32) }
+    }
+
+    /// A list of faces whose corners are given one after the other, and where each face ends.
+    ///
+    /// # Panics
+    /// If `ends` decreases or does not end with the number of corners.
+    pub fn from_ends(corners: Vec<VertexId>, ends: &[u32]) -> Self {
+        assert_eq!(ends.last().map_or(0, |&end| end as usize), corners.len(), "ends of the faces");
+        assert!(ends.is_sorted(), "faces end one after the other");
+        let degree = ends.first().copied().unwrap_or(3);
+        let uniform =
+            ends.iter().zip(1_u64..).all(|(&end, f)| u64::from(end) == f * u64::from(degree));
+        let starts = if degree > 0 && uniform {
+            Starts::Every(degree)
+        } else {
+            Starts::At(iter::once(0).chain(ends.iter().copied()).collect())
+        };
+        FaceList { corners, starts }
     }
 
     /// A list from indices counted from 0, one slice a face.
@@ -270,6 +288,16 @@ mod tests {
             [3, 4, 5, 6]
         );
         assert_eq!((list.uniform_degree(), list.is_triangles()), (None, false));
+    }
+
+    #[test]
+    fn faces_may_be_given_by_their_ends() {
+        let list = FaceList::from_indices::<&[usize]>(&[&[0, 1, 2], &[2, 1, 3, 4], &[], &[7]]);
+        assert_eq!(FaceList::from_ends(list.corners().to_vec(), &[3, 7, 7, 8]), list);
+        let triangles = FaceList::from_indices(&[[0, 1, 2], [2, 1, 3]]);
+        assert_eq!(FaceList::from_ends(triangles.corners().to_vec(), &[3, 6]), triangles);
+        assert_eq!(FaceList::from_ends(Vec::new(), &[0]).len(), 1);
+        assert_eq!(FaceList::from_ends(Vec::new(), &[]), FaceList::new());
     }
 
     #[test]

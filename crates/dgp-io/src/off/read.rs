@@ -1,0 +1,477 @@
+//! Reading OFF.
+
+use std::ops::Range;
+
+use dgp_mesh::{
+    COLOR, Color, DVec2, DVec3, FaceList, IndexedFaceSet, MAX_ELEMENTS, NORMAL, Normal, Progress,
+    UV, VertexId,
+};
+
+use super::{Kind, binary, keyword};
+use crate::{
+    COLOR_INDEX, Contents, Document, Encoding, Format, WEIGHT,
+    error::{Cause, Fault, Stop},
+    report::Oddities,
+    text::{Cursor, RowCount, Text, decoded, map_blocks},
+};
+
+/// Reads an OFF file.
+pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Stop> {
+    let text = Text::new(bytes, Format::Off)?;
+    let mut cursor = text.start();
+    let mut parts = Parts::default();
+    let mut comments = Vec::new();
+    let mut oddities = Oddities::default();
+    cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
+    let start = cursor.at;
+    let kind = if let Some((kind, len)) = keyword(cursor.word()) {
+        cursor.at = start + len;
+        kind
+    } else {
+        cursor.at = start;
+        if cursor.number().is_err() {
+            let expected = "the keyword OFF";
+            let cause = Cause::WrongFormat { format: Format::Off, expected };
+            return Err(Fault::new(start, cause).into());
+        }
+        cursor.at = start;
+        oddities.add("no keyword OFF at the beginning", start);
+        Kind::default()
+    };
+    let mut after = cursor;
+    if after.word() == b"BINARY" {
+        after.skip_line();
+        return binary::read(bytes, after.at, kind, comments, oddities);
+    }
+    if kind.dimension {
+        let dimension = next_integer(&mut cursor, &mut comments)?;
+        if dimension != 3 {
+            let what = format!("OFF with vertices of {dimension} dimensions");
+            return Err(Fault::new(start, Cause::Unsupported { what }).into());
+        }
+    }
+    let header = Header::parse(&mut cursor, kind, &mut comments)?;
+    cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
+
+    let blocks = [RowCount::Lines, RowCount::Filled]
+        .into_iter()
+        .find_map(|count| by_lines(text, cursor.at, &header, count, progress).transpose());
+    match blocks {
+        Some(blocks) => blocks?.into_iter().for_each(|block| parts.append(block)),
+        None => {
+            progress.report(0.5)?;
+            parts = Parts::by_words(cursor, &header)?;
+        }
+    }
+    if header.layout.extra > 0 {
+        let what = format!("{} unknown numbers after each vertex skipped", header.layout.extra);
+        oddities.add(what, cursor.at);
+    }
+    comments.append(&mut parts.comments);
+    let mut document = parts.into_document(&mut oddities)?;
+    document.comments = comments;
+    Ok(Contents { document, oddities, encoding: Encoding::Text })
+}
+
+/// The counts, and what stands on the line of a vertex.
+struct Header {
+    vertices: usize,
+    faces: usize,
+    layout: Layout,
+}
+
+/// How many numbers of which kind make a vertex, in this order after the position.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    weight: bool,
+    normal: bool,
+    /// 0, 3 or 4.
+    color: usize,
+    uv: bool,
+    /// Numbers that the keyword does not explain.
+    extra: usize,
+}
+
+impl Header {
+    fn parse(
+        cursor: &mut Cursor<'_>,
+        kind: Kind,
+        comments: &mut Vec<String>,
+    ) -> Result<Self, Fault> {
+        let start = cursor.at;
+        let vertices = next_integer(cursor, comments)?;
+        let faces = next_integer(cursor, comments)?;
+        let mut next = *cursor;
+        if cursor.ends_line() {
+            // The number of edges may stand on a line of its own, or be missing.
+            next.skip_to_word(|_| ());
+            if next.integer().is_ok() && next.ends_line() {
+                *cursor = next;
+            }
+        } else {
+            cursor.integer()?;
+        }
+        // A vertex takes three digits and three blanks at least, a face a digit and a blank.
+        let left = cursor.remaining() as u64 + 1;
+        let vertices = checked(vertices, "vertices", left / 6, start)?;
+        let faces = checked(faces, "faces", left / 2, start)?;
+
+        let mut first = *cursor;
+        first.skip_to_word(|_| ());
+        let mut count = 0;
+        while !first.ends_line() {
+            first.word();
+            count += 1;
+        }
+        let known =
+            3 + usize::from(kind.weight) + 3 * usize::from(kind.normal) + 2 * usize::from(kind.uv);
+        let rest = if vertices == 0 { 0 } else { count - known.min(count) };
+        let color = match rest {
+            _ if !kind.color => 0,
+            3 => 3,
+            _ => 4,
+        };
+        let Kind { weight, normal, uv, .. } = kind;
+        let extra = rest.saturating_sub(color);
+        Ok(Header { vertices, faces, layout: Layout { weight, normal, color, uv, extra } })
+    }
+}
+
+fn next_integer(cursor: &mut Cursor<'_>, comments: &mut Vec<String>) -> Result<i64, Fault> {
+    cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
+    cursor.integer().map_err(|fault| fault.within("header"))
+}
+
+fn checked(count: i64, what: &str, possible: u64, at: usize) -> Result<usize, Fault> {
+    match usize::try_from(count) {
+        Ok(count) if count as u64 <= possible && count <= MAX_ELEMENTS => Ok(count),
+        Err(_) => Err(Fault::header(at, format!("there cannot be {count} {what}"))),
+        Ok(count) => {
+            let what = what.to_owned();
+            Err(Fault::new(at, Cause::TooMany { what, claimed: count as u64, possible }))
+        }
+    }
+}
+
+/// The vertices and faces of a part of the file.
+#[derive(Default)]
+pub(super) struct Parts {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) weights: Vec<f64>,
+    pub(super) normals: Vec<Normal>,
+    pub(super) colors: Vec<RawColor>,
+    pub(super) color_scale: ColorScale,
+    pub(super) uvs: Vec<DVec2>,
+    pub(super) corners: Vec<VertexId>,
+    pub(super) face_ends: Vec<u32>,
+    /// The colors of faces that have one.
+    pub(super) face_colors: Vec<(u32, RawColor)>,
+    pub(super) face_color_scale: ColorScale,
+    /// The color map indices of faces that have one.
+    pub(super) face_color_indices: Vec<(u32, i32)>,
+    pub(super) comments: Vec<String>,
+    pub(super) small_faces: usize,
+}
+
+/// A color as it stands in the file.
+#[derive(Clone, Copy)]
+pub(super) struct RawColor {
+    pub(super) channels: [f32; 4],
+    /// 3, or 4 with alpha.
+    pub(super) count: usize,
+}
+
+/// How the colors of a file are to be understood. Whole numbers are 0..255; but if all of them are 0
+/// or 1, or any color is not whole, all are 0..1.
+#[derive(Clone, Copy, Default)]
+pub(super) struct ColorScale {
+    pub(super) fractions: bool,
+    pub(super) beyond_one: bool,
+}
+
+impl ColorScale {
+    fn note(&mut self, color: RawColor, whole: bool) {
+        self.fractions |= !whole;
+        self.beyond_one |= color.channels[..color.count].iter().any(|&x| x > 1.0);
+    }
+
+    fn or(self, other: Self) -> Self {
+        ColorScale {
+            fractions: self.fractions || other.fractions,
+            beyond_one: self.beyond_one || other.beyond_one,
+        }
+    }
+
+    fn color(self, color: RawColor) -> Color {
+        let mut channels = color.channels;
+        if !self.fractions && self.beyond_one {
+            channels[..color.count].iter_mut().for_each(|channel| *channel /= 255.0);
+        }
+        Color(channels)
+    }
+}
+
+/// The file as rows of one vertex or face each, in blocks; `None` if it is not like that.
+fn by_lines(
+    text: Text<'_>,
+    start: usize,
+    header: &Header,
+    count: RowCount,
+    progress: Progress<'_>,
+) -> Result<Option<Vec<Parts>>, Stop> {
+    let blocks = text.row_blocks(start, count);
+    let ranges: Vec<Range<usize>> = blocks.iter().map(|(range, _)| range.clone()).collect();
+    let parse = |b: usize, range: Range<usize>| {
+        Ok(Parts::by_lines(text.cursor(range), blocks[b].1, header, count))
+    };
+    let parts = map_blocks(&ranges, parse, progress)?;
+    let parts: Option<Vec<Parts>> = parts.into_iter().collect();
+    Ok(parts.filter(|parts| {
+        parts.iter().map(|part| part.face_ends.len()).sum::<usize>() == header.faces
+            && parts.iter().map(|part| part.positions.len()).sum::<usize>() == header.vertices
+    }))
+}
+
+/// How numbers of an element are spread over lines.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Spread {
+    OneLine,
+    AnyLines,
+}
+
+impl Parts {
+    /// The rows of a block, of which `row` is the first; `None` if a line is not what it should be.
+    fn by_lines(
+        mut cursor: Cursor<'_>,
+        mut row: usize,
+        header: &Header,
+        count: RowCount,
+    ) -> Option<Self> {
+        let mut parts = Parts::default();
+        while !cursor.is_at_end() && row < header.vertices + header.faces {
+            if cursor.ends_line() {
+                if count == RowCount::Lines {
+                    return None;
+                }
+            } else {
+                if row < header.vertices {
+                    parts.vertex(&mut cursor, header.layout, Spread::OneLine).ok()?;
+                } else {
+                    parts.face(&mut cursor, header.vertices, Spread::OneLine).ok()?;
+                }
+                if !cursor.ends_line() {
+                    return None;
+                }
+                row += 1;
+            }
+            parts.end_line(&mut cursor);
+        }
+        while !cursor.is_at_end() && row >= header.vertices + header.faces {
+            // Behind the last face there may be comments, and whatever else does not matter.
+            cursor.ends_line();
+            parts.end_line(&mut cursor);
+        }
+        Some(parts)
+    }
+
+    #[inline]
+    fn end_line(&mut self, cursor: &mut Cursor<'_>) {
+        if cursor.peek() == b'#' {
+            cursor.at += 1;
+            self.comments.push(decoded(cursor.rest_of_line()));
+        }
+        cursor.skip_line();
+    }
+
+    /// All vertices and faces, wherever lines end.
+    fn by_words(mut cursor: Cursor<'_>, header: &Header) -> Result<Self, Fault> {
+        let mut parts = Parts::default();
+        // Numbers without explanation can only be told by the ends of lines.
+        let layout = Layout { extra: 0, ..header.layout };
+        let numbered = |fault: Fault, element, number, expected| match fault.cause {
+            Cause::TooFewNumbers { .. } => {
+                let what = if element == "vertex" { "vertices" } else { "faces" }.to_owned();
+                Fault { cause: Cause::CutShort { what, found: number, expected }, ..fault }
+            }
+            _ => fault.within_number(element, number),
+        };
+        for i in 0..header.vertices {
+            parts
+                .vertex(&mut cursor, layout, Spread::AnyLines)
+                .map_err(|fault| numbered(fault, "vertex", i, header.vertices))?;
+        }
+        for i in 0..header.faces {
+            parts
+                .face(&mut cursor, header.vertices, Spread::AnyLines)
+                .map_err(|fault| numbered(fault, "face", i, header.faces))?;
+        }
+        Ok(parts)
+    }
+
+    #[inline]
+    fn vertex(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        layout: Layout,
+        spread: Spread,
+    ) -> Result<(), Fault> {
+        let position = self.triple(cursor, spread)?;
+        let weight = if layout.weight { Some(self.number(cursor, spread)?) } else { None };
+        let normal = if layout.normal { Some(self.triple(cursor, spread)?) } else { None };
+        self.positions.push(position);
+        self.weights.extend(weight);
+        self.normals.extend(normal.map(Normal));
+        if layout.color > 0 {
+            let mut color = RawColor { channels: [1.0; 4], count: layout.color };
+            let mut whole = true;
+            for channel in &mut color.channels[..layout.color] {
+                self.to_word(cursor, spread);
+                let (value, is_whole) = cursor.spelled_number()?;
+                *channel = value as f32;
+                whole &= is_whole;
+            }
+            self.color_scale.note(color, whole);
+            self.colors.push(color);
+        }
+        if layout.uv {
+            let uv = DVec2::new(self.number(cursor, spread)?, self.number(cursor, spread)?);
+            self.uvs.push(uv);
+        }
+        for _ in 0..layout.extra {
+            cursor.number()?;
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn triple(&mut self, cursor: &mut Cursor<'_>, spread: Spread) -> Result<DVec3, Fault> {
+        let x = self.number(cursor, spread)?;
+        let y = self.number(cursor, spread)?;
+        Ok(DVec3::new(x, y, self.number(cursor, spread)?))
+    }
+
+    #[inline]
+    fn number(&mut self, cursor: &mut Cursor<'_>, spread: Spread) -> Result<f64, Fault> {
+        self.to_word(cursor, spread);
+        cursor.number()
+    }
+
+    #[inline]
+    fn to_word(&mut self, cursor: &mut Cursor<'_>, spread: Spread) {
+        if spread == Spread::AnyLines {
+            cursor.skip_to_word(|comment| self.comments.push(decoded(&comment[1..])));
+        }
+    }
+
+    #[inline]
+    fn face(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        vertex_count: usize,
+        spread: Spread,
+    ) -> Result<(), Fault> {
+        self.to_word(cursor, spread);
+        let start = cursor.at;
+        let degree = cursor.integer()?;
+        // Each corner takes a digit and a blank.
+        let degree = checked(degree, "corners", cursor.remaining() as u64 / 2, start)?;
+        self.small_faces += usize::from(degree < 3);
+        for _ in 0..degree {
+            self.to_word(cursor, spread);
+            let at = cursor.at;
+            let index = cursor.integer()?;
+            match usize::try_from(index) {
+                Ok(v) if v < vertex_count => self.corners.push(VertexId::new(v)),
+                _ => {
+                    let (what, count, first) = ("vertex", vertex_count, 0);
+                    return Err(Fault::new(
+                        at,
+                        Cause::IndexOutOfRange { what, index, count, first },
+                    ));
+                }
+            }
+        }
+        let face = self.face_ends.len() as u32;
+        self.face_ends.push(self.corners.len() as u32);
+        if !cursor.ends_line() {
+            self.face_color(cursor, face)?;
+        }
+        Ok(())
+    }
+
+    /// One number is an index of a color map, three or four are a color.
+    fn face_color(&mut self, cursor: &mut Cursor<'_>, face: u32) -> Result<(), Fault> {
+        let mut color = RawColor { channels: [1.0; 4], count: 0 };
+        let mut whole = true;
+        while !cursor.ends_line() {
+            let (value, is_whole) = cursor.spelled_number()?;
+            if color.count < 4 {
+                color.channels[color.count] = value as f32;
+                color.count += 1;
+                whole &= is_whole;
+            }
+        }
+        if color.count < 3 {
+            self.face_color_indices.push((face, color.channels[0] as i32));
+        } else {
+            self.face_color_scale.note(color, whole);
+            self.face_colors.push((face, color));
+        }
+        Ok(())
+    }
+
+    /// Adds what stands later in the file.
+    fn append(&mut self, later: Parts) {
+        let (corners, faces) = (self.corners.len() as u32, self.face_ends.len() as u32);
+        self.positions.extend(later.positions);
+        self.weights.extend(later.weights);
+        self.normals.extend(later.normals);
+        self.colors.extend(later.colors);
+        self.color_scale = self.color_scale.or(later.color_scale);
+        self.uvs.extend(later.uvs);
+        self.corners.extend(later.corners);
+        self.face_ends.extend(later.face_ends.iter().map(|end| corners + end));
+        self.face_colors.extend(later.face_colors.iter().map(|&(f, color)| (faces + f, color)));
+        self.face_color_scale = self.face_color_scale.or(later.face_color_scale);
+        let indices = later.face_color_indices.iter();
+        self.face_color_indices.extend(indices.map(|&(f, index)| (faces + f, index)));
+        self.comments.extend(later.comments);
+        self.small_faces += later.small_faces;
+    }
+
+    /// The document, once all parts are together.
+    pub(super) fn into_document(self, oddities: &mut Oddities) -> Result<Document, Stop> {
+        oddities.add_many("face with fewer than 3 corners kept".into(), self.small_faces, 0);
+        let faces = FaceList::from_ends(self.corners, &self.face_ends);
+        let mut set = IndexedFaceSet::new(self.positions, faces)?;
+        if !self.weights.is_empty() {
+            set.vertex_attributes.insert(WEIGHT, self.weights);
+        }
+        if !self.normals.is_empty() {
+            set.vertex_attributes.insert(NORMAL, self.normals);
+        }
+        if !self.colors.is_empty() {
+            let scale = self.color_scale;
+            let colors: Vec<Color> = self.colors.iter().map(|&raw| scale.color(raw)).collect();
+            set.vertex_attributes.insert(COLOR, colors);
+        }
+        if !self.uvs.is_empty() {
+            set.vertex_attributes.insert(UV, self.uvs);
+        }
+        if !self.face_colors.is_empty() {
+            let mut colors = vec![Color::default(); set.face_count()];
+            for &(f, raw) in &self.face_colors {
+                colors[f as usize] = self.face_color_scale.color(raw);
+            }
+            set.face_attributes.insert(COLOR, colors);
+        }
+        if !self.face_color_indices.is_empty() {
+            let mut indices = vec![-1; set.face_count()];
+            for &(f, index) in &self.face_color_indices {
+                indices[f as usize] = index;
+            }
+            set.face_attributes.insert(COLOR_INDEX, indices);
+        }
+        Ok(set.into())
+    }
+}
