@@ -49,20 +49,18 @@ impl Format {
         let head = &bytes[..bytes.len().min(4096)];
         let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
         let lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
-        for line in lines.filter(|line| !line.is_empty() && line[0] != b'#') {
-            let word = line.split(u8::is_ascii_whitespace).next().unwrap_or_default();
-            return match word {
-                b"ply" => Some(Format::Ply),
-                b"solid" => Some(Format::Stl),
-                b"v" | b"vn" | b"vt" | b"f" | b"o" | b"g" | b"mtllib" | b"usemtl" | b"s" => {
-                    Some(Format::Obj)
-                }
-                _ if crate::off::is_keyword(word) => Some(Format::Off),
-                _ if fast_float2::parse::<f64, _>(word).is_ok() => Some(Format::Xyz),
-                _ => None,
-            };
+        let mut lines = lines.filter(|line| !line.is_empty() && line[0] != b'#');
+        let word = lines.next()?.split(u8::is_ascii_whitespace).next()?;
+        match word {
+            b"ply" => Some(Format::Ply),
+            b"solid" => Some(Format::Stl),
+            b"v" | b"vn" | b"vt" | b"f" | b"o" | b"g" | b"mtllib" | b"usemtl" | b"s" => {
+                Some(Format::Obj)
+            }
+            _ if crate::off::is_keyword(word) => Some(Format::Off),
+            _ if fast_float2::parse::<f64, _>(word).is_ok() => Some(Format::Xyz),
+            _ => None,
         }
-        None
     }
 
     /// The name of the format in lower case, its extension too.

@@ -282,6 +282,21 @@ impl<'a> Cursor<'a> {
         self.odd_number()
     }
 
+    /// The `N` numbers that come next on this line.
+    #[inline]
+    pub(crate) fn numbers<const N: usize>(&mut self) -> Result<[f64; N], Fault> {
+        let mut numbers = [0.0; N];
+        for (found, number) in numbers.iter_mut().enumerate() {
+            *number = self.number().map_err(|fault| match fault.cause {
+                Cause::TooFewNumbers { .. } => {
+                    Fault { cause: Cause::TooFewNumbers { found, expected: N }, ..fault }
+                }
+                _ => fault,
+            })?;
+        }
+        Ok(numbers)
+    }
+
     /// Whether a number that ends at `at` goes on as in `1.#INF`.
     #[inline]
     fn is_odd(&self, at: usize) -> bool {

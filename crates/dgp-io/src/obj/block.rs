@@ -71,16 +71,16 @@ impl References {
     /// Adds the number `index` of one of the elements of which there are `count` so far.
     #[inline]
     fn push(&mut self, index: i64, count: usize) {
-        if index > 0 {
+        self.numbers.push(match index {
             // More than any mesh has is out of range, whatever it is.
-            self.numbers.push(index.min(MAX_ELEMENTS as i64 + 1) as u32);
-        } else if index < 0 {
-            self.relative
-                .push((self.numbers.len() as u32, (count as i64 + 1).saturating_add(index)));
-            self.numbers.push(0);
-        } else {
-            self.numbers.push(0);
-        }
+            1.. => index.min(MAX_ELEMENTS as i64 + 1) as u32,
+            0 => 0,
+            _ => {
+                let local = (count as i64 + 1).saturating_add(index);
+                self.relative.push((self.numbers.len() as u32, local));
+                0
+            }
+        });
     }
 
     fn pad(&mut self, len: usize) {
@@ -142,7 +142,7 @@ impl Block {
 
     #[inline]
     fn vertex(&mut self, cursor: &mut Cursor<'_>) -> Result<(), Fault> {
-        let position = DVec3::new(cursor.number()?, cursor.number()?, cursor.number()?);
+        let position = DVec3::from_array(cursor.numbers()?);
         let index = self.positions.len();
         self.positions.push(position);
         if cursor.ends_line() {
@@ -186,7 +186,7 @@ impl Block {
     }
 
     fn normal(&mut self, cursor: &mut Cursor<'_>) -> Result<(), Fault> {
-        self.normals.push(DVec3::new(cursor.number()?, cursor.number()?, cursor.number()?));
+        self.normals.push(DVec3::from_array(cursor.numbers()?));
         if !cursor.ends_line() {
             self.oddities.add("normal with more than 3 numbers: the last are skipped", cursor.at);
         }

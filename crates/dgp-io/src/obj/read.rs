@@ -230,6 +230,9 @@ fn unit_colors(colors: &[[f64; 4]], oddities: &mut Oddities) -> Vec<Color> {
     colors.iter().map(color).collect()
 }
 
+/// The number of a value that is not known yet.
+const UNSET: u32 = u32::MAX;
+
 /// Makes an attribute of `values` and the numbers of those that corners name.
 fn place<T: AttributeValue>(
     set: &mut IndexedFaceSet,
@@ -253,7 +256,6 @@ fn place<T: AttributeValue>(
     let zero = T::default();
     let value = |number: u32| if number == 0 { &zero } else { &values[number as usize - 1] };
 
-    const UNSET: u32 = u32::MAX;
     let mut vertex_numbers = vec![UNSET; set.vertex_count()];
     let agree = corners.iter().zip(set.faces().corners()).all(|(&number, v)| {
         let known = &mut vertex_numbers[v.index()];

@@ -14,6 +14,7 @@ pub(crate) use write::write;
 
 /// What the keyword of an OFF file says about its vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a letter of the keyword")]
 struct Kind {
     uv: bool,
     color: bool,

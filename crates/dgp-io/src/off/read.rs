@@ -56,12 +56,13 @@ pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
     let blocks = [RowCount::Lines, RowCount::Filled]
         .into_iter()
         .find_map(|count| by_lines(text, cursor.at, &header, count, progress).transpose());
-    match blocks {
-        Some(blocks) => blocks?.into_iter().for_each(|block| parts.append(block)),
-        None => {
-            progress.report(0.5)?;
-            parts = Parts::by_words(cursor, &header)?;
+    if let Some(blocks) = blocks {
+        for block in blocks? {
+            parts.append(block);
         }
+    } else {
+        progress.report(0.5)?;
+        parts = Parts::by_words(cursor, &header)?;
     }
     if header.layout.extra > 0 {
         let what = format!("{} unknown numbers after each vertex skipped", header.layout.extra);
@@ -98,6 +99,7 @@ impl Header {
         kind: Kind,
         comments: &mut Vec<String>,
     ) -> Result<Self, Fault> {
+        cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
         let start = cursor.at;
         let vertices = next_integer(cursor, comments)?;
         let faces = next_integer(cursor, comments)?;
@@ -325,7 +327,7 @@ impl Parts {
             let mut color = RawColor { channels: [1.0; 4], count: layout.color };
             let mut whole = true;
             for channel in &mut color.channels[..layout.color] {
-                self.to_word(cursor, spread);
+                self.reach_word(cursor, spread);
                 let (value, is_whole) = cursor.spelled_number()?;
                 *channel = value as f32;
                 whole &= is_whole;
@@ -352,12 +354,12 @@ impl Parts {
 
     #[inline]
     fn number(&mut self, cursor: &mut Cursor<'_>, spread: Spread) -> Result<f64, Fault> {
-        self.to_word(cursor, spread);
+        self.reach_word(cursor, spread);
         cursor.number()
     }
 
     #[inline]
-    fn to_word(&mut self, cursor: &mut Cursor<'_>, spread: Spread) {
+    fn reach_word(&mut self, cursor: &mut Cursor<'_>, spread: Spread) {
         if spread == Spread::AnyLines {
             cursor.skip_to_word(|comment| self.comments.push(decoded(&comment[1..])));
         }
@@ -370,14 +372,14 @@ impl Parts {
         vertex_count: usize,
         spread: Spread,
     ) -> Result<(), Fault> {
-        self.to_word(cursor, spread);
+        self.reach_word(cursor, spread);
         let start = cursor.at;
         let degree = cursor.integer()?;
         // Each corner takes a digit and a blank.
         let degree = checked(degree, "corners", cursor.remaining() as u64 / 2, start)?;
         self.small_faces += usize::from(degree < 3);
         for _ in 0..degree {
-            self.to_word(cursor, spread);
+            self.reach_word(cursor, spread);
             let at = cursor.at;
             let index = cursor.integer()?;
             match usize::try_from(index) {

@@ -1,6 +1,8 @@
 //! Writing OFF.
 
-use dgp_mesh::{COLOR, Color, DVec2, FaceId, NORMAL, Normal, Progress, UV, VertexId};
+use dgp_mesh::{
+    AttributeColumn, COLOR, Color, DVec2, FaceId, NORMAL, Normal, Progress, UV, VertexId,
+};
 
 use crate::{
     COLOR_INDEX, Document, Encoding, Error, WEIGHT,
@@ -40,12 +42,12 @@ impl<'a> Columns<'a> {
         let set = &document.set;
         let vertex = &set.vertex_attributes;
         Columns {
-            weights: vertex.get(WEIGHT).map(|column| column.values()),
-            normals: vertex.get(NORMAL).map(|column| column.values()),
-            colors: vertex.get(COLOR).map(|column| column.values()),
-            uvs: vertex.get(UV).map(|column| column.values()),
-            face_colors: set.face_attributes.get(COLOR).map(|column| column.values()),
-            face_color_indices: set.face_attributes.get(COLOR_INDEX).map(|column| column.values()),
+            weights: vertex.get(WEIGHT).map(AttributeColumn::values),
+            normals: vertex.get(NORMAL).map(AttributeColumn::values),
+            colors: vertex.get(COLOR).map(AttributeColumn::values),
+            uvs: vertex.get(UV).map(AttributeColumn::values),
+            face_colors: set.face_attributes.get(COLOR).map(AttributeColumn::values),
+            face_color_indices: set.face_attributes.get(COLOR_INDEX).map(AttributeColumn::values),
         }
     }
 
@@ -213,7 +215,9 @@ fn binary(
     }
     for (f, face) in set.faces().iter() {
         writer.u32(face.len() as u32);
-        face.iter().for_each(|v| writer.u32(v.index() as u32));
+        for v in face {
+            writer.u32(v.index() as u32);
+        }
         if let Some(colors) = columns.face_colors {
             writer.u32(4);
             colors[f.index()].0.iter().for_each(|&x| writer.f32(x));
