@@ -1,0 +1,257 @@
+// CGAL behind the protocol of protocol.hpp.
+#include "protocol.hpp"
+
+#include <CGAL/Polygon_mesh_processing/border.h>
+#include <CGAL/Polygon_mesh_processing/compute_normal.h>
+#include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/Surface_mesh/IO.h>
+#include <CGAL/boost/graph/IO/polygon_mesh_io.h>
+#include <boost/graph/dijkstra_shortest_paths.hpp>
+
+#include <limits>
+#include <memory>
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+typedef CGAL::Simple_cartesian<double> Kernel;
+typedef Kernel::Point_3 Point;
+typedef Kernel::Vector_3 Vector;
+typedef CGAL::Surface_mesh<Point> Mesh;
+typedef std::vector<std::vector<std::size_t>> Faces;
+
+bool fill(Mesh& mesh, const Raw& raw) {
+    mesh.reserve(raw.points.size(), raw.points.size() + raw.faces(), raw.faces());
+    for (const auto& p : raw.points) mesh.add_vertex(Point(p[0], p[1], p[2]));
+    std::vector<Mesh::Vertex_index> face;
+    bool accepted = true;
+    for (std::size_t f = 0; f < raw.faces(); ++f) {
+        face.clear();
+        for (uint32_t c = raw.starts[f]; c < raw.starts[f + 1]; ++c)
+            face.push_back(Mesh::Vertex_index(raw.corners[c]));
+        accepted &= face.size() >= 3 && mesh.add_face(face) != Mesh::null_face();
+    }
+    return accepted;
+}
+
+std::unique_ptr<Mesh> built(const Raw& raw) {
+    auto mesh = std::make_unique<Mesh>();
+    if (!fill(*mesh, raw)) throw std::runtime_error("CGAL refuses a face");
+    return mesh;
+}
+
+Faces soup(const Raw& raw) {
+    Faces faces(raw.faces());
+    for (std::size_t f = 0; f < raw.faces(); ++f)
+        faces[f].assign(raw.corners.begin() + raw.starts[f], raw.corners.begin() + raw.starts[f + 1]);
+    return faces;
+}
+
+std::vector<Point> points(const Raw& raw) {
+    std::vector<Point> points;
+    for (const auto& p : raw.points) points.emplace_back(p[0], p[1], p[2]);
+    return points;
+}
+
+void counts(Report& report, const Mesh& mesh) {
+    report.number("vertices", double(num_vertices(mesh)));
+    report.number("edges", double(num_edges(mesh)));
+    report.number("faces", double(num_faces(mesh)));
+    std::vector<Mesh::Halfedge_index> cycles;
+    pmp::extract_boundary_cycles(mesh, std::back_inserter(cycles));
+    std::vector<double> loops;
+    for (const auto h : cycles) loops.push_back(double(halfedges_around_face(h, mesh).size()));
+    std::sort(loops.begin(), loops.end());
+    report.list("boundary_loops", loops);
+    std::vector<std::size_t> component(num_faces(mesh));
+    const auto map = boost::make_iterator_property_map(component.begin(), get(boost::face_index, mesh));
+    report.number("components", double(pmp::connected_components(mesh, map)));
+}
+
+void facts(Report& report, const Raw& raw, const std::string& prefix) {
+    Mesh mesh;
+    const bool accepted = pmp::is_polygon_soup_a_polygon_mesh(soup(raw)) && fill(mesh, raw);
+    report.truth("accepted", accepted);
+    if (!accepted) return;
+    counts(report, mesh);
+
+    RingHash rings;
+    std::vector<uint32_t> ring;
+    for (const auto v : mesh.vertices()) {
+        ring.clear();
+        if (!mesh.is_isolated(v))
+            for (const auto w : vertices_around_target(halfedge(v, mesh), mesh)) ring.push_back(uint32_t(w));
+        // CGAL goes clockwise.
+        std::reverse(ring.begin(), ring.end());
+        rings.add(uint32_t(v), ring);
+    }
+    report.text("rings", rings.hex());
+
+    const bool triangles = raw.triangles();
+    std::vector<double> normals, areas, angles;
+    for (const auto f : mesh.faces()) {
+        const Vector n = pmp::compute_face_normal(f, mesh);
+        normals.insert(normals.end(), {n.x(), n.y(), n.z()});
+        if (triangles) areas.push_back(pmp::face_area(f, mesh));
+        const uint32_t start = raw.starts[uint32_t(f)], degree = raw.starts[uint32_t(f) + 1] - start;
+        for (uint32_t k = 0; k < degree; ++k) {
+            const auto at = [&](uint32_t i) -> const Point& {
+                return mesh.point(Mesh::Vertex_index(raw.corners[start + i % degree]));
+            };
+            angles.push_back(CGAL::approximate_angle(at(k + degree - 1), at(k), at(k + 1)) * CGAL_PI / 180.0);
+        }
+    }
+    column(prefix, "face_normals", normals);
+    if (triangles) {
+        column(prefix, "face_areas", areas);
+        column(prefix, "corner_angles", angles);
+        report.number("area", pmp::area(mesh));
+        if (CGAL::is_closed(mesh)) report.number("volume", pmp::volume(mesh));
+        // CGAL's own vertex normal is another one; these sums are written on its kernel.
+        std::vector<double> by_angle, by_max;
+        for (const auto v : mesh.vertices()) {
+            Vector a(0, 0, 0), m(0, 0, 0);
+            if (mesh.is_isolated(v)) {
+                by_angle.insert(by_angle.end(), 3, 0.0);
+                by_max.insert(by_max.end(), 3, 0.0);
+                continue;
+            }
+            for (const auto h : halfedges_around_target(halfedge(v, mesh), mesh)) {
+                if (is_border(h, mesh)) continue;
+                const Point& p = mesh.point(v);
+                const Vector in(p, mesh.point(source(h, mesh))), out(p, mesh.point(target(next(h, mesh), mesh)));
+                const Vector n = CGAL::cross_product(out, in);
+                const double length = std::sqrt(n.squared_length());
+                if (length == 0) continue;
+                a = a + n * (CGAL::approximate_angle(out, in) / length);
+                m = m + n / (in.squared_length() * out.squared_length());
+            }
+            const auto unit = [](const Vector& n) {
+                const double length = std::sqrt(n.squared_length());
+                return length > 0 ? n / length : n;
+            };
+            a = unit(a), m = unit(m);
+            by_angle.insert(by_angle.end(), {a.x(), a.y(), a.z()});
+            by_max.insert(by_max.end(), {m.x(), m.y(), m.z()});
+        }
+        column(prefix, "vertex_normals_angle", by_angle);
+        column(prefix, "vertex_normals_max", by_max);
+    }
+}
+
+void dijkstra(Report& report, const Raw& raw, const Call& call) {
+    const auto mesh = built(raw);
+    std::vector<double> distance(num_vertices(*mesh));
+    std::vector<double> length(num_edges(*mesh));
+    report.time(call.repeat, [&] {
+        for (const auto e : mesh->edges()) length[e] = pmp::edge_length(mesh->halfedge(e), *mesh);
+        const auto weight = boost::make_iterator_property_map(length.begin(), get(boost::edge_index, *mesh));
+        const auto map = boost::make_iterator_property_map(distance.begin(), get(boost::vertex_index, *mesh));
+        boost::dijkstra_shortest_paths(*mesh, Mesh::Vertex_index(0),
+            boost::distance_map(map).weight_map(weight).vertex_index_map(get(boost::vertex_index, *mesh)));
+        return 0;
+    });
+    // Vertices that cannot be reached are told as -1.
+    for (double& d : distance)
+        if (d == (std::numeric_limits<double>::max)()) d = -1;
+    column(call.out, "distances", distance);
+}
+
+void repair(Report& report, const Raw& raw, const Call& call) {
+    auto corners = points(raw);
+    auto faces = soup(raw);
+    report.truth("oriented", pmp::orient_polygon_soup(corners, faces));
+    report.number("points", double(corners.size()));
+    const bool mesh_now = pmp::is_polygon_soup_a_polygon_mesh(faces);
+    report.truth("accepted", mesh_now);
+    Raw out;
+    for (const auto& p : corners) out.points.push_back({p.x(), p.y(), p.z()});
+    out.starts.push_back(0);
+    for (const auto& face : faces) {
+        for (const auto v : face) out.corners.push_back(uint32_t(v));
+        out.starts.push_back(uint32_t(out.corners.size()));
+    }
+    if (!call.out.empty()) write_raw(call.out + ".raw", out);
+    if (!mesh_now) return;
+    Mesh mesh;
+    pmp::polygon_soup_to_polygon_mesh(corners, faces, mesh);
+    counts(report, mesh);
+}
+
+void rings(Report& report, const Raw& raw, int repeat) {
+    const auto mesh = built(raw);
+    double sum = 0;
+    report.time(repeat, [&] {
+        std::vector<Vector> sums(mesh->num_vertices());
+        for (const auto v : mesh->vertices()) {
+            Vector total(0, 0, 0);
+            for (const auto w : vertices_around_target(halfedge(v, *mesh), *mesh))
+                total = total + (mesh->point(w) - CGAL::ORIGIN);
+            sums[v] = total;
+        }
+        sum = sums[sums.size() / 2].x();
+        return sums;
+    });
+    report.number("value", sum);
+}
+
+void normals(Report& report, const Raw& raw, int repeat) {
+    const auto mesh = built(raw);
+    auto map = mesh->add_property_map<Mesh::Vertex_index, Vector>("v:normal", CGAL::NULL_VECTOR).first;
+    report.time(repeat, [&] {
+        pmp::compute_vertex_normals(*mesh, map);
+        return 0;
+    });
+    report.number("value", map[Mesh::Vertex_index(uint32_t(mesh->num_vertices() / 2))].x());
+}
+
+void read(Report& report, const Call& call) {
+    double vertices = 0, faces = 0;
+    report.time(call.repeat, [&] {
+        auto mesh = std::make_unique<Mesh>();
+        if (!CGAL::IO::read_polygon_mesh(call.input, *mesh)) throw std::runtime_error("CGAL cannot read it");
+        vertices = double(num_vertices(*mesh));
+        faces = double(num_faces(*mesh));
+        return mesh;
+    });
+    report.number("vertices", vertices);
+    report.number("faces", faces);
+}
+
+void write(Report& report, const Raw& raw, const Call& call, bool binary) {
+    const auto mesh = built(raw);
+    report.time(call.repeat, [&] {
+        const auto options = CGAL::parameters::use_binary_mode(binary).stream_precision(17);
+        if (!CGAL::IO::write_polygon_mesh(call.out, *mesh, options)) throw std::runtime_error("CGAL cannot write it");
+        return 0;
+    });
+}
+
+int main(int count, char** arguments) {
+    try {
+        const Call call = Call::parse(count, arguments);
+        Report report;
+        if (call.operation == "read") read(report, call);
+        else {
+            const Raw raw = read_raw(call.input);
+            if (call.operation == "facts") facts(report, raw, call.out);
+            else if (call.operation == "repair") repair(report, raw, call);
+            else if (call.operation == "dijkstra") dijkstra(report, raw, call);
+            else if (call.operation == "build") report.time(call.repeat, [&] { return built(raw); });
+            else if (call.operation == "memory") memory(report, [&] { return built(raw); });
+            else if (call.operation == "rings") rings(report, raw, call.repeat);
+            else if (call.operation == "normals") normals(report, raw, call.repeat);
+            else if (call.operation == "write-ascii") write(report, raw, call, false);
+            else if (call.operation == "write-binary") write(report, raw, call, true);
+            else throw std::runtime_error("CGAL's driver has no operation " + call.operation);
+        }
+        report.print();
+        return 0;
+    } catch (const std::exception& error) {
+        std::cerr << error.what() << std::endl;
+        return 1;
+    }
+}

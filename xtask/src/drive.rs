@@ -1,0 +1,126 @@
+//! One operation of ours in a process of its own, by the protocol of the reference drivers, so that
+//! time and memory of peers and of us are measured alike.
+
+use std::{
+    fs,
+    hint::black_box,
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+use dgp_mesh::{
+    DVec3, IndexedFaceSet, Mesh, VertexId,
+    measure::{NormalWeight, vertex_normals},
+};
+use serde_json::{Map, Value, json};
+
+use crate::{raw, shell::Outcome};
+
+/// What was asked for on the command line.
+struct Call {
+    operation: String,
+    input: PathBuf,
+    repeat: usize,
+}
+
+impl Call {
+    fn parse(arguments: &[String]) -> Outcome<Call> {
+        let [operation, input, options @ ..] = arguments else {
+            return Err("usage: drive OPERATION INPUT [--repeat N] [--out FILE]".into());
+        };
+        let mut call = Call { operation: operation.clone(), input: input.into(), repeat: 1 };
+        for pair in options.chunks(2) {
+            match pair {
+                [name, value] if name == "--repeat" => call.repeat = value.parse()?,
+                _ => return Err(format!("unknown option {}", pair[0]).into()),
+            }
+        }
+        Ok(call)
+    }
+}
+
+/// Runs the operation and prints one JSON object.
+pub(crate) fn run(arguments: &[String]) -> Outcome<()> {
+    let call = Call::parse(arguments)?;
+    let mut report = Map::new();
+    perform(&call, &mut report)?;
+    report.insert("peak_bytes".into(), json!(status("VmHWM:")));
+    println!("{}", Value::Object(report));
+    Ok(())
+}
+
+fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
+    match call.operation.as_str() {
+        "build" => {
+            let set = raw::read(&call.input)?;
+            time(report, call.repeat, || built(&set))
+        }
+        "memory" => memory(report, &call.input),
+        "rings" => {
+            let mesh = built(&raw::read(&call.input)?)?;
+            let sum =
+                |v: VertexId| mesh.vertex_neighbors(v).map(|w| mesh.position(w)).sum::<DVec3>();
+            time(report, call.repeat, || Ok(mesh.map_vertices(sum)))
+        }
+        "normals" => {
+            let mesh = built(&raw::read(&call.input)?)?;
+            time(report, call.repeat, || Ok(vertex_normals(&mesh, NormalWeight::Area)))
+        }
+        operation => Err(format!("no operation `{operation}`").into()),
+    }
+}
+
+fn built(set: &IndexedFaceSet) -> Outcome<Mesh> {
+    Ok(Mesh::new(set)?)
+}
+
+/// Runs `run` so often and notes wall and processor milliseconds of each run. What it returns is
+/// dropped outside the timed part.
+fn time<T>(
+    report: &mut Map<String, Value>,
+    repeat: usize,
+    mut run: impl FnMut() -> Outcome<T>,
+) -> Outcome<()> {
+    let (mut wall, mut processor) = (Vec::new(), Vec::new());
+    for _ in 0..repeat {
+        let (start, cpu) = (Instant::now(), processor_ms());
+        let result = black_box(run()?);
+        wall.push(start.elapsed().as_secs_f64() * 1e3);
+        processor.push(processor_ms() - cpu);
+        drop(result);
+    }
+    report.insert("ms".into(), json!(wall));
+    report.insert("cpu_ms".into(), json!(processor));
+    Ok(())
+}
+
+/// What the process holds after building beyond what it held before, and the most it held between.
+fn memory(report: &mut Map<String, Value>, input: &Path) -> Outcome<()> {
+    let set = raw::read(input)?;
+    // Forgets the most so far.
+    fs::write("/proc/self/clear_refs", "5")?;
+    let before = status("VmRSS:");
+    let mesh = black_box(built(&set)?);
+    report.insert("mesh_bytes".into(), json!(status("VmRSS:") - before));
+    report.insert("build_peak_bytes".into(), json!(status("VmHWM:") - before));
+    drop(mesh);
+    Ok(())
+}
+
+/// A figure of this process in bytes; 0 where the system does not tell.
+fn status(name: &str) -> f64 {
+    let text = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = text.lines().find_map(|line| line.strip_prefix(name));
+    let kilobytes = line.and_then(|rest| rest.trim().split(' ').next()?.parse::<f64>().ok());
+    kilobytes.unwrap_or(0.0) * 1024.0
+}
+
+/// Time that processors spent on the threads of this process.
+fn processor_ms() -> f64 {
+    let Ok(threads) = fs::read_dir("/proc/self/task") else { return 0.0 };
+    let times = threads.filter_map(|thread| {
+        let text = fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        text.split(' ').next()?.parse::<f64>().ok()
+    });
+    times.sum::<f64>() / 1e6
+}
