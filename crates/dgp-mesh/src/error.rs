@@ -65,6 +65,15 @@ pub enum Error {
         degree: usize,
     },
 
+    /// A face cannot be cut into triangles without a second edge between two vertices.
+    #[error(
+        "each way to cut {face} into triangles joins vertices that have an edge already; split that edge"
+    )]
+    NoTriangulation {
+        /// The face.
+        face: FaceId,
+    },
+
     /// An option has a value outside its range.
     #[error("option `{name}` is {value}, but must be {expected}")]
     InvalidOption {

@@ -8,6 +8,7 @@
 //! | topology | [`topology`]: components, holes, Euler characteristic, genus |
 //! | representations | [`PolygonSoup`], [`IndexedFaceSet`] with its [`FaceList`], [`EdgeList`], [`Connectivity`], [`Mesh`] |
 //! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
+//! | triangles from polygons | [`triangulate()`] [`triangulate_faces`] [`triangulate_polygon`] |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
 //!
 //! ```
@@ -40,6 +41,7 @@ mod set;
 pub mod shapes;
 mod soup;
 pub mod topology;
+mod triangulate;
 mod weld;
 
 pub use glam::{DMat3, DVec2, DVec3};
@@ -59,4 +61,7 @@ pub use mesh::{Attributes, Mesh};
 pub use progress::{Callback, Cancelled, Progress};
 pub use set::{EdgeSet, FaceSet, HalfedgeSet, IdSet, VertexSet};
 pub use soup::PolygonSoup;
+pub use triangulate::{
+    OPTIMAL_LIMIT, TriangulationMethod, triangulate, triangulate_faces, triangulate_polygon,
+};
 pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
