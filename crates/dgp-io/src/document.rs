@@ -1,6 +1,6 @@
 //! What a file holds.
 
-use dgp_mesh::{AttributeTable, AttributeValue, Id, IndexedFaceSet, Mesh, VertexId};
+use dgp_mesh::{AttributeTable, AttributeValue, Id, IndexedFaceSet, Mesh, VertexId, VertexMap};
 
 use crate::Error;
 
@@ -109,6 +109,45 @@ impl Document {
     }
 }
 
+impl Document {
+    /// Puts `set` in place of the faces there are; lines, points and tags follow their vertices.
+    ///
+    /// `vertices` tells what became of each vertex, as repairs and compactions report it. Lines are
+    /// cut where a vertex was dropped, and points and tags of dropped vertices go: returns how many of
+    /// all these were cut or went.
+    pub fn follow(&mut self, set: IndexedFaceSet, vertices: &VertexMap<Option<VertexId>>) -> usize {
+        let moved = |&v: &VertexId| vertices.get(v).copied().flatten();
+        let mut lost = 0;
+        let mut polylines = Vec::new();
+        for line in &self.polylines {
+            let parts = line.split(|v| moved(v).is_none());
+            lost += usize::from(line.iter().any(|v| moved(v).is_none()));
+            let parts = parts.map(|part| part.iter().filter_map(moved).collect::<Vec<_>>());
+            polylines.extend(parts.filter(|part| part.len() > 1));
+        }
+        self.polylines = polylines;
+        let before = self.points.len() + self.tags.len();
+        self.points = self.points.iter().filter_map(moved).collect();
+        self.tags.retain_mut(|tag| {
+            if !["crease", "corner"].contains(&tag.name.as_str()) {
+                return true;
+            }
+            let renumbered = tag.integers.iter().map(|&i| {
+                let v =
+                    usize::try_from(i).ok().filter(|&i| i < vertices.len()).map(VertexId::new)?;
+                moved(&v).map(|v| v.index() as i64)
+            });
+            let renumbered: Option<Vec<i64>> = renumbered.collect();
+            let stays = renumbered.is_some();
+            tag.integers = renumbered.unwrap_or_default();
+            stays
+        });
+        lost += before - self.points.len() - self.tags.len();
+        self.set = set;
+        lost
+    }
+}
+
 impl From<IndexedFaceSet> for Document {
     fn from(set: IndexedFaceSet) -> Self {
         Document { set, ..Document::default() }
@@ -119,5 +158,40 @@ impl From<&Mesh> for Document {
     /// The mesh with its data per vertex, corner and face.
     fn from(mesh: &Mesh) -> Self {
         mesh.to_indexed().into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_points_and_tags_follow_their_vertices() {
+        let v = VertexId::new;
+        let mut document = Document {
+            polylines: vec![vec![v(0), v(1), v(2), v(3), v(4)], vec![v(3), v(4)]],
+            points: vec![v(1), v(2)],
+            tags: vec![
+                SubdivisionTag {
+                    name: "crease".into(),
+                    integers: vec![3, 4],
+                    ..Default::default()
+                },
+                SubdivisionTag { name: "corner".into(), integers: vec![2], ..Default::default() },
+                SubdivisionTag {
+                    name: "interpolateboundary".into(),
+                    integers: vec![2],
+                    ..Default::default()
+                },
+            ],
+            ..Document::default()
+        };
+        // Vertex 2 goes, the others move up.
+        let vertices = vec![Some(v(0)), Some(v(1)), None, Some(v(2)), Some(v(3))].into();
+        assert_eq!(document.follow(IndexedFaceSet::default(), &vertices), 3);
+        assert_eq!(document.polylines, [vec![v(0), v(1)], vec![v(2), v(3)], vec![v(2), v(3)]]);
+        assert_eq!(document.points, [v(1)]);
+        let tags: Vec<_> = document.tags.iter().map(|tag| tag.integers.clone()).collect();
+        assert_eq!(tags, [vec![2, 3], vec![2]]);
     }
 }

@@ -26,7 +26,7 @@ pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
 
 /// Writes `chunks` one after the other to a new file that takes the place of `path` when all of it
 /// is on the disk. If that fails, `path` is as before and nothing is left beside it.
-pub(crate) fn store(path: &Path, chunks: &[Vec<u8>]) -> Result<(), Error> {
+pub(crate) fn store(path: &Path, chunks: &[impl AsRef<[u8]>]) -> Result<(), Error> {
     // A link is followed, or the file would take the place of the link.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let refused = |source| Error::File { action: "write", path: path.to_owned(), source };
@@ -39,7 +39,7 @@ pub(crate) fn store(path: &Path, chunks: &[Vec<u8>]) -> Result<(), Error> {
     }
     let mut draft = Draft::new(&target).map_err(refused)?;
     for chunk in chunks {
-        draft.file.write_all(chunk).map_err(refused)?;
+        draft.file.write_all(chunk.as_ref()).map_err(refused)?;
     }
     if let Some(metadata) = old {
         draft.file.set_permissions(metadata.permissions()).map_err(refused)?;

@@ -6,6 +6,7 @@
 //! | read bytes from elsewhere | [`read_bytes`], [`read_bytes_with`] |
 //! | write a file | [`write()`] |
 //! | write to memory | [`write_bytes`] |
+//! | write a picture or a report | [`write_whole`] |
 //!
 //! - Everything a file holds is in the [`Document`]; what was skipped is in [`ReadReport::warnings`].
 //! - What a format cannot hold is in [`WriteReport::losses`]. All else reads back bit for bit.
@@ -126,6 +127,11 @@ pub fn write(
     progress.report(0.9)?;
     file::store(path, &chunks)?;
     Ok(report)
+}
+
+/// Writes `bytes` to the file at `path`, such as a picture or a report, whole or not at all.
+pub fn write_whole(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Error> {
+    file::store(path.as_ref(), &[bytes])
 }
 
 /// The bytes of a file that holds `document`.
