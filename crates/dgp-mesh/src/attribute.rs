@@ -259,12 +259,16 @@ impl<I: Id> AttributeTable<I> {
     }
 
     /// Sets the values of `to` to a mix of those of others, `to` perhaps among them; weights are not
-    /// negative and sum to 1. Without parts nothing changes.
+    /// negative and sum to 1. Parts without weight do not count; without parts nothing changes.
     pub fn mix(&mut self, to: I, parts: &[(f64, I)]) {
-        if parts.is_empty() || self.columns.is_empty() {
+        if self.columns.is_empty() {
             return;
         }
-        let parts: Vec<_> = parts.iter().map(|&(weight, id)| (weight, id.index())).collect();
+        let parts = parts.iter().filter(|(weight, _)| *weight != 0.0);
+        let parts: Vec<_> = parts.map(|&(weight, id)| (weight, id.index())).collect();
+        if parts.is_empty() {
+            return;
+        }
         for (_, column) in &mut self.columns {
             column.mix(to.index(), &parts);
         }
@@ -297,6 +301,18 @@ impl<I: Id> AttributeTable<I> {
             self.remove(&name);
             self.columns.push((name, column));
         }
+    }
+
+    /// Sets the values of `id` to their defaults.
+    pub fn reset(&mut self, id: I) {
+        for (_, column) in &mut self.columns {
+            column.reset(id.index());
+        }
+    }
+
+    /// Whether two elements have the same values in every column.
+    pub fn equal(&self, a: I, b: I) -> bool {
+        self.columns.iter().all(|(_, column)| column.equal(a.index(), b.index()))
     }
 
     /// The table of `len` elements whose element `j` has the values of `source(j)`, or default
@@ -374,6 +390,8 @@ trait Column: Send + Sync {
     fn resize(&mut self, len: usize);
     fn copy(&mut self, from: usize, to: usize);
     fn mix(&mut self, to: usize, parts: &[(f64, usize)]);
+    fn reset(&mut self, at: usize);
+    fn equal(&self, a: usize, b: usize) -> bool;
     fn gather(
         &self,
         len: usize,
@@ -399,6 +417,14 @@ impl<T: AttributeValue> Column for Vec<T> {
     fn mix(&mut self, to: usize, parts: &[(f64, usize)]) {
         let parts: Vec<_> = parts.iter().map(|&(weight, from)| (weight, &self[from])).collect();
         self[to] = T::mix(&parts);
+    }
+
+    fn reset(&mut self, at: usize) {
+        self[at] = T::default();
+    }
+
+    fn equal(&self, a: usize, b: usize) -> bool {
+        self[a] == self[b]
     }
 
     fn gather(

@@ -1,6 +1,6 @@
 //! What can go wrong.
 
-use crate::{Cancelled, EdgeId, FaceId, NotManifold, VertexId};
+use crate::{Cancelled, EdgeId, EditError, FaceId, NotManifold, VertexId};
 
 /// Why a function of this crate gave no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -73,6 +73,9 @@ pub enum Error {
         /// The face.
         face: FaceId,
     },
+    /// An edit was refused.
+    #[error(transparent)]
+    Edit(#[from] EditError),
 
     /// An option has a value outside its range.
     #[error("option `{name}` is {value}, but must be {expected}")]

@@ -9,6 +9,7 @@
 //! | representations | [`PolygonSoup`], [`IndexedFaceSet`] with its [`FaceList`], [`EdgeList`], [`Connectivity`], [`Mesh`] |
 //! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
 //! | triangles from polygons | [`triangulate()`] [`triangulate_faces`] [`triangulate_polygon`] |
+//! | edits | [`Editor`], [`reorder`], [`Mesh::reverse`], [`Mesh::validate`] |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
 //!
 //! ```
@@ -27,6 +28,7 @@ mod build;
 mod check;
 mod connectivity;
 mod edge_list;
+mod edit;
 mod error;
 mod face_list;
 mod id;
@@ -43,6 +45,7 @@ mod soup;
 pub mod topology;
 mod triangulate;
 mod weld;
+mod validate;
 
 pub use glam::{DMat3, DVec2, DVec3};
 
@@ -52,6 +55,7 @@ pub use attribute::{
 };
 pub use connectivity::{Connectivity, NotManifold};
 pub use edge_list::EdgeList;
+pub use edit::{Compaction, EditError, Editor, FaceRemoval, Renumbering, reorder};
 pub use error::Error;
 pub use face_list::FaceList;
 pub use id::{CornerId, EdgeId, FaceId, HalfedgeId, Id, MAX_ELEMENTS, VertexId};
@@ -65,3 +69,4 @@ pub use triangulate::{
     OPTIMAL_LIMIT, TriangulationMethod, triangulate, triangulate_faces, triangulate_polygon,
 };
 pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
+pub use validate::Invalid;

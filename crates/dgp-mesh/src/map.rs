@@ -100,6 +100,11 @@ impl<I: Id, T> IdMap<I, T> {
         self.values.resize_with(len, T::default);
     }
 
+    /// Drops the values of the last elements until at most `len` are left.
+    pub fn truncate(&mut self, len: usize) {
+        self.values.truncate(len);
+    }
+
     /// All ids.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = I> + ExactSizeIterator + use<I, T> {
         (0..self.values.len()).map(I::from_index)
