@@ -73,6 +73,7 @@ pub enum Error {
         /// The face.
         face: FaceId,
     },
+
     /// An edit was refused.
     #[error(transparent)]
     Edit(#[from] EditError),

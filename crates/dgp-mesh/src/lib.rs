@@ -44,8 +44,8 @@ pub mod shapes;
 mod soup;
 pub mod topology;
 mod triangulate;
-mod weld;
 mod validate;
+mod weld;
 
 pub use glam::{DMat3, DVec2, DVec3};
 
@@ -70,3 +70,4 @@ pub use triangulate::{
 };
 pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
 pub use validate::Invalid;
+pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};

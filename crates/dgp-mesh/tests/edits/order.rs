@@ -1,6 +1,6 @@
 //! Reordering.
 
-use dgp_mesh::{DVec2, DVec3, IndexedFaceSet, Mesh, UV, VertexMap, reorder, shapes};
+use dgp_mesh::{DVec2, DVec3, IndexedFaceSet, Mesh, UV, VertexId, VertexMap, reorder, shapes};
 
 use super::five_meshes;
 
@@ -44,7 +44,7 @@ fn neighbors_are_closer_in_memory_than_in_random_order() {
     let distance = |mesh: &Mesh| {
         let total: usize = mesh
             .edges()
-            .map(|e| mesh.edge_vertices(e).map(|v| v.index()))
+            .map(|e| mesh.edge_vertices(e).map(VertexId::index))
             .map(|[a, b]| a.abs_diff(b))
             .sum();
         total as f64 / mesh.edge_count() as f64
