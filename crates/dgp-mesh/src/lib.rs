@@ -68,6 +68,6 @@ pub use soup::PolygonSoup;
 pub use triangulate::{
     OPTIMAL_LIMIT, TriangulationMethod, triangulate, triangulate_faces, triangulate_polygon,
 };
-pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
 pub use validate::Invalid;
+pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
 pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
