@@ -70,4 +70,3 @@ pub use triangulate::{
 };
 pub use validate::Invalid;
 pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
-pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
