@@ -8,8 +8,9 @@ use std::{
     time::Instant,
 };
 
+use dgp_io::{Document, Encoding, WriteOptions};
 use dgp_mesh::{
-    DVec3, IndexedFaceSet, Mesh, VertexId,
+    DVec3, IndexedFaceSet, Mesh, Progress, VertexId,
     measure::{NormalWeight, vertex_normals},
 };
 use serde_json::{Map, Value, json};
@@ -21,6 +22,7 @@ struct Call {
     operation: String,
     input: PathBuf,
     repeat: usize,
+    out: PathBuf,
 }
 
 impl Call {
@@ -28,10 +30,16 @@ impl Call {
         let [operation, input, options @ ..] = arguments else {
             return Err("usage: drive OPERATION INPUT [--repeat N] [--out FILE]".into());
         };
-        let mut call = Call { operation: operation.clone(), input: input.into(), repeat: 1 };
+        let mut call = Call {
+            operation: operation.clone(),
+            input: input.into(),
+            repeat: 1,
+            out: PathBuf::new(),
+        };
         for pair in options.chunks(2) {
             match pair {
                 [name, value] if name == "--repeat" => call.repeat = value.parse()?,
+                [name, value] if name == "--out" => call.out = value.into(),
                 _ => return Err(format!("unknown option {}", pair[0]).into()),
             }
         }
@@ -66,8 +74,23 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
             let mesh = built(&raw::read(&call.input)?)?;
             time(report, call.repeat, || Ok(vertex_normals(&mesh, NormalWeight::Area)))
         }
+        "read" => time(report, call.repeat, || built(&dgp_io::read(&call.input)?.set)),
+        "parse" => time(report, call.repeat, || Ok(dgp_io::read(&call.input)?)),
+        "write-ascii" | "write-binary" => write(call, report),
         operation => Err(format!("no operation `{operation}`").into()),
     }
+}
+
+/// As the peers do: from the half-edge mesh to the file.
+fn write(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
+    let mesh = built(&raw::read(&call.input)?)?;
+    let binary = call.operation == "write-binary";
+    let encoding = if binary { Encoding::LittleEndian } else { Encoding::Text };
+    let options = WriteOptions { encoding: Some(encoding), ..WriteOptions::default() };
+    time(report, call.repeat, || {
+        let document = Document { set: mesh.to_indexed(), ..Document::default() };
+        Ok(dgp_io::write(&call.out, &document, &options, Progress::NONE)?)
+    })
 }
 
 fn built(set: &IndexedFaceSet) -> Outcome<Mesh> {

@@ -10,6 +10,7 @@
 //! | `bench [--quick] [--criterion]` | times peers and us in one run, writes target/bench/index.html |
 //! | `drive OPERATION INPUT …` | one measured operation in a process of its own |
 
+mod bench;
 mod ci;
 mod data;
 mod drive;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
 fn run(arguments: &[String]) -> Outcome<()> {
     let (command, options) = arguments.split_first().ok_or(USAGE)?;
     match command.as_str() {
+        "bench" => bench::run(options),
         "ci" => ci::run(),
         "tidy" => tidy::run(),
         "index" => index::write(),

@@ -96,6 +96,12 @@ impl fmt::Display for Peers {
 }
 
 impl Driver {
+    /// Our own driver: xtask itself.
+    pub(crate) fn ours() -> Outcome<Driver> {
+        let program = std::env::current_exe()?;
+        Ok(Driver { name: "dgp".into(), program, first: vec!["drive".into()] })
+    }
+
     /// Runs one operation in a process of its own; an error holds what it wrote to standard error.
     pub(crate) fn call(&self, operation: &str, input: &Path, options: &[&str]) -> Outcome<Value> {
         let mut command = Command::new(&self.program);

@@ -90,6 +90,11 @@ pub(crate) fn libraries() -> Outcome<Vec<String>> {
     Ok(layers::libraries(&metadata()?))
 }
 
+/// The names of all published crates, in order.
+pub(crate) fn published() -> Outcome<Vec<String>> {
+    Ok(layers::published(&metadata()?))
+}
+
 fn metadata() -> Outcome<Value> {
     let mut command = shell::cargo(&["metadata", "--format-version", "1", "--no-deps"]);
     Ok(serde_json::from_str(&shell::output(&mut command)?)?)

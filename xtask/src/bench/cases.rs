@@ -1,0 +1,76 @@
+//! What is timed.
+
+/// One operation, by the names it has in our driver and the peers'.
+pub(super) struct Case {
+    /// The name in tables and in the ledger.
+    pub(super) name: &'static str,
+    /// What it is, for readers.
+    pub(super) what: &'static str,
+    pub(super) ours: &'static str,
+    pub(super) openmesh: Option<&'static str>,
+    pub(super) cgal: Option<&'static str>,
+    pub(super) data: Data,
+    pub(super) figure: Figure,
+}
+
+/// What the drivers are given.
+#[derive(Clone, Copy)]
+pub(super) enum Data {
+    /// A raw mesh.
+    Raw,
+    /// A file of this name.
+    File(&'static str),
+    /// A raw mesh, and the name of a file to write.
+    Output(&'static str),
+}
+
+/// Which figure of a driver's answer counts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Figure {
+    /// Milliseconds of wall time.
+    Time,
+    /// A figure in bytes, told per triangle.
+    Bytes(&'static str),
+}
+
+/// All cases, in the order of the tables.
+pub(super) fn all() -> Vec<Case> {
+    let case = |name, what, operation| Case {
+        name,
+        what,
+        ours: operation,
+        openmesh: Some(operation),
+        cgal: Some(operation),
+        data: Data::Raw,
+        figure: Figure::Time,
+    };
+    let mut cases = vec![
+        case("build", "half-edges from indexed triangles", "build"),
+        Case {
+            figure: Figure::Bytes("mesh_bytes"),
+            ..case("memory", "bytes per triangle that a built mesh holds", "memory")
+        },
+        Case {
+            figure: Figure::Bytes("build_peak_bytes"),
+            ..case("build-memory", "bytes per triangle at most while building", "memory")
+        },
+        case("rings", "sum of the neighbors' positions at every vertex", "rings"),
+        case("normals", "a normal at every vertex", "normals"),
+    ];
+    for (read, write, file, binary) in [
+        ("read-obj", "write-obj", "mesh.obj", false),
+        ("read-ply", "write-ply", "mesh.ply", true),
+        ("read-ply-ascii", "write-ply-ascii", "mesh-ascii.ply", false),
+        ("read-stl", "write-stl", "mesh.stl", true),
+        ("read-off", "write-off", "mesh.off", false),
+    ] {
+        cases.push(Case {
+            openmesh: Some("read-triangles"),
+            data: Data::File(file),
+            ..case(read, "file to half-edge mesh", "read")
+        });
+        let operation = if binary { "write-binary" } else { "write-ascii" };
+        cases.push(Case { data: Data::Output(file), ..case(write, "mesh to file", operation) });
+    }
+    cases
+}

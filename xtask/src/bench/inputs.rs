@@ -1,0 +1,64 @@
+//! The inputs: spheres with noise, in the order of their making and shuffled.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use dgp_io::{Document, Encoding, WriteOptions};
+use dgp_mesh::{Progress, shapes};
+
+use super::Effort;
+use crate::{raw, shell::Outcome};
+
+/// A mesh on disk.
+pub(super) struct Input {
+    pub(super) name: String,
+    pub(super) triangles: usize,
+    /// The raw mesh.
+    pub(super) raw: PathBuf,
+    /// The folder with the mesh in every format, if it was written.
+    pub(super) files: Option<PathBuf>,
+}
+
+/// Writes the inputs for this effort.
+pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
+    let levels: &[usize] = if effort == Effort::Quick { &[4] } else { &[6, 7, 8] };
+    let mut inputs = Vec::new();
+    for (i, &level) in levels.iter().enumerate() {
+        let set = shapes::with_noise(shapes::icosphere(level)?, 0.05, 1)?.to_indexed();
+        let triangles = set.face_count();
+        let name = format!("sphere-{}k", triangles / 1000);
+        let place = folder.join(&name);
+        fs::create_dir_all(&place)?;
+        let path = place.join("mesh.raw");
+        raw::write(&path, &set)?;
+        let shuffled = (i + 1 == levels.len()).then(|| shapes::shuffled(&set, 2));
+        let document = Document { set, ..Document::default() };
+        for (file, encoding) in [
+            ("mesh.obj", None),
+            ("mesh.ply", Some(Encoding::LittleEndian)),
+            ("mesh-ascii.ply", Some(Encoding::Text)),
+            ("mesh.stl", Some(Encoding::LittleEndian)),
+            ("mesh.off", None),
+        ] {
+            let options = WriteOptions { encoding, ..WriteOptions::default() };
+            let report = dgp_io::write(place.join(file), &document, &options, Progress::NONE);
+            if let Err(error) = report {
+                eprintln!("{file}: {error}");
+            }
+        }
+        inputs.push(Input { name: name.clone(), triangles, raw: path, files: Some(place) });
+        if let Some(set) = shuffled {
+            let path = folder.join(format!("{name}-shuffled.raw"));
+            raw::write(&path, &set)?;
+            inputs.push(Input {
+                name: format!("{name}, shuffled"),
+                triangles,
+                raw: path,
+                files: None,
+            });
+        }
+    }
+    Ok(inputs)
+}

@@ -1,0 +1,211 @@
+//! Alternating runs and their medians.
+
+use std::{collections::BTreeMap, fmt::Write, path::Path};
+
+use serde_json::{Value, json};
+
+use super::{
+    Effort,
+    cases::{Case, Data, Figure},
+    inputs::Input,
+};
+use crate::peers::{Driver, Peers};
+
+/// One case on one input.
+pub(super) struct Row {
+    case: &'static str,
+    what: &'static str,
+    input: String,
+    triangles: usize,
+    unit: &'static str,
+    ours: Series,
+    peers: Vec<(String, Series)>,
+    /// Why a driver has no figure.
+    failures: Vec<String>,
+}
+
+/// The figures of one driver, one per round.
+#[derive(Default)]
+struct Series {
+    values: Vec<f64>,
+    processor: Vec<f64>,
+    peak: Vec<f64>,
+}
+
+/// Runs one case in alternation; `None` where the input is not made for it.
+pub(super) fn case(
+    case: &Case,
+    input: &Input,
+    peers: &Peers,
+    effort: Effort,
+    folder: &Path,
+) -> Option<Row> {
+    let (path, out) = match (case.data, &input.files) {
+        (Data::Raw, _) => (input.raw.clone(), None),
+        (Data::File(name), Some(files)) => (files.join(name), None),
+        (Data::Output(name), Some(_)) => (input.raw.clone(), Some(folder.join(name))),
+        (_, None) => return None,
+    };
+    let mut drivers = vec![(Driver::ours().ok()?, case.ours)];
+    drivers.extend(case.openmesh.map(|operation| (peers.openmesh.clone(), operation)));
+    drivers.extend(case.cgal.map(|operation| (peers.cgal.clone(), operation)));
+
+    let (rounds, repeat) = match effort {
+        Effort::Quick => (1, "1"),
+        Effort::Full if input.triangles > 1_000_000 => (3, "2"),
+        Effort::Full => (5, "3"),
+    };
+    let mut series: Vec<Series> = drivers.iter().map(|_| Series::default()).collect();
+    let mut failures = BTreeMap::new();
+    for _ in 0..rounds {
+        for ((driver, operation), series) in drivers.iter().zip(&mut series) {
+            let mut options = vec!["--repeat", repeat];
+            let out = out.as_ref().map(|path| path.to_string_lossy().into_owned());
+            options.extend(out.iter().flat_map(|path| ["--out", path.as_str()]));
+            match driver.call(operation, &path, &options) {
+                Ok(answer) => series.add(case.figure, &answer, input.triangles),
+                Err(error) => {
+                    failures.insert(driver.name.clone(), error.to_string());
+                }
+            }
+        }
+    }
+    if let Some(path) = out {
+        // Nothing is there if every driver failed.
+        let _ = std::fs::remove_file(path);
+    }
+    let mut series = series.into_iter();
+    let ours = series.next().unwrap_or_default();
+    let names = drivers.iter().skip(1).map(|(driver, _)| driver.name.clone());
+    let row = Row {
+        case: case.name,
+        what: case.what,
+        input: input.name.clone(),
+        triangles: input.triangles,
+        unit: if case.figure == Figure::Time { "ms" } else { "B/triangle" },
+        ours,
+        peers: names.zip(series).collect(),
+        failures: failures.into_iter().map(|(name, error)| format!("{name}: {error}")).collect(),
+    };
+    row.print();
+    Some(row)
+}
+
+impl Series {
+    fn add(&mut self, figure: Figure, answer: &Value, triangles: usize) {
+        let list = |name: &str| -> Vec<f64> {
+            answer[name].as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+        };
+        match figure {
+            Figure::Time => {
+                self.values.extend(median(&list("ms")));
+                self.processor.extend(median(&list("cpu_ms")));
+            }
+            Figure::Bytes(name) => {
+                self.values.extend(answer[name].as_f64().map(|bytes| bytes / triangles as f64));
+            }
+        }
+        self.peak.extend(answer["peak_bytes"].as_f64());
+    }
+
+    fn to_json(&self) -> Value {
+        json!({
+            "median": median(&self.values),
+            "min": self.values.iter().copied().reduce(f64::min),
+            "max": self.values.iter().copied().reduce(f64::max),
+            "cpu": median(&self.processor),
+            "peak_bytes": median(&self.peak),
+        })
+    }
+}
+
+impl Row {
+    fn ratios(&self, peer: &Series) -> Vec<f64> {
+        peer.values.iter().zip(&self.ours.values).map(|(peer, ours)| peer / ours).collect()
+    }
+
+    pub(super) fn to_json(&self) -> Value {
+        let peers = self.peers.iter().map(|(name, series)| {
+            let ratios = self.ratios(series);
+            let processor = series.processor.iter().zip(&self.ours.processor);
+            let processor: Vec<f64> = processor.map(|(peer, ours)| peer / ours).collect();
+            let mut value = series.to_json();
+            value["name"] = json!(name);
+            value["ratio"] = json!(median(&ratios));
+            value["ratio_min"] = json!(ratios.iter().copied().reduce(f64::min));
+            value["ratio_max"] = json!(ratios.iter().copied().reduce(f64::max));
+            value["cpu_ratio"] = json!(median(&processor));
+            value
+        });
+        json!({
+            "case": self.case,
+            "what": self.what,
+            "input": self.input,
+            "triangles": self.triangles,
+            "unit": self.unit,
+            "ours": self.ours.to_json(),
+            "peers": peers.collect::<Vec<_>>(),
+            "failures": self.failures,
+        })
+    }
+
+    fn print(&self) {
+        let mut line = format!("{:16} {:24}", self.case, self.input);
+        if let Some(ours) = median(&self.ours.values) {
+            let _ = write!(line, " {ours:9.2} {}", self.unit);
+        }
+        for (name, series) in &self.peers {
+            if let (Some(value), Some(ratio)) =
+                (median(&series.values), median(&self.ratios(series)))
+            {
+                let _ = write!(line, "  {name} {value:.2} ({ratio:.2}×)");
+            }
+        }
+        println!("{line}");
+        for failure in &self.failures {
+            println!("    no figure: {failure}");
+        }
+    }
+}
+
+/// The middle value; `None` of none.
+fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    match sorted.len() {
+        0 => None,
+        n if n % 2 == 1 => Some(sorted[middle]),
+        _ => Some(0.5 * (sorted[middle - 1] + sorted[middle])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_are_in_the_middle() {
+        assert_eq!(median(&[]), None);
+        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
+    }
+
+    #[test]
+    fn ratios_are_of_pairs_and_above_one_where_we_are_faster() {
+        let series = |values: &[f64]| Series { values: values.to_vec(), ..Series::default() };
+        let row = Row {
+            case: "x",
+            what: "",
+            input: String::new(),
+            triangles: 1,
+            unit: "ms",
+            ours: series(&[1.0, 2.0, 4.0]),
+            peers: vec![("peer".into(), series(&[3.0, 2.0, 8.0]))],
+            failures: Vec::new(),
+        };
+        let json = row.to_json();
+        assert_eq!(json["peers"][0]["ratio"], 2.0);
+        assert_eq!(json["peers"][0]["ratio_min"], 1.0);
+    }
+}

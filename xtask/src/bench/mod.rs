@@ -1,0 +1,71 @@
+//! Peers and us on the same inputs in one run: alternating processes, medians of pairs.
+//!
+//! Writes target/bench/results.json and target/bench/index.html. docs/book/benchmarks.md explains the
+//! columns; no number there or here is typed by hand.
+
+mod cases;
+mod crates;
+mod inputs;
+mod machine;
+mod measure;
+mod page;
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use crate::{
+    peers::{Peers, Wanted},
+    shell::{self, Outcome},
+};
+
+/// How thorough a run is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Effort {
+    /// One small size, one pair: shows that everything runs.
+    Quick,
+    /// All sizes.
+    Full,
+}
+
+/// Runs the benchmarks; `only` are words that the name of a case must contain.
+pub(crate) fn run(options: &[String]) -> Outcome<()> {
+    let mut effort = Effort::Full;
+    let mut only = Vec::new();
+    for option in options {
+        match option.as_str() {
+            "--quick" => effort = Effort::Quick,
+            "--criterion" => return shell::run(&mut shell::cargo(&["bench", "--workspace"])),
+            word if !word.starts_with('-') => only.push(word),
+            _ => return Err("usage: bench [--quick | --criterion] [CASE…]".into()),
+        }
+    }
+    let peers = Peers::build(Wanted::Optimized)?;
+    let folder = shell::target("bench")?;
+    let inputs = inputs::prepare(effort, &folder)?;
+    let mut rows = Vec::new();
+    for input in &inputs {
+        for case in cases::all() {
+            if only.is_empty() || only.iter().any(|word| case.name.contains(word)) {
+                rows.extend(measure::case(&case, input, &peers, effort, &folder));
+            }
+        }
+    }
+    let crates =
+        if effort == Effort::Full && only.is_empty() { crates::measure()? } else { Value::Null };
+    let golden = fs::read_to_string(shell::target("golden")?.join("golden.json"));
+    let golden: Value =
+        golden.ok().and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+    let rows: Vec<Value> = rows.iter().map(measure::Row::to_json).collect();
+    let results = json!({
+        "machine": machine::describe(&peers.openmesh.name)?,
+        "rows": rows,
+        "crates": crates,
+        "golden": golden,
+    });
+    let (json, html) = (folder.join("results.json"), folder.join("index.html"));
+    fs::write(&json, serde_json::to_string_pretty(&results)?)?;
+    fs::write(&html, page::html(&results))?;
+    println!("{}\n{}", json.display(), html.display());
+    Ok(())
+}
