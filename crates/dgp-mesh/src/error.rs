@@ -1,6 +1,6 @@
 //! What can go wrong.
 
-use crate::{Cancelled, EdgeId, EditError, FaceId, NotManifold, VertexId};
+use crate::{Cancelled, DefectReport, EdgeId, EditError, FaceId, NotManifold, VertexId};
 
 /// Why a function of this crate gave no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -77,6 +77,24 @@ pub enum Error {
     /// An edit was refused.
     #[error(transparent)]
     Edit(#[from] EditError),
+
+    /// The faces have defects, all of which are listed.
+    #[error("the faces are no manifold:\n{0}")]
+    Defective(Box<DefectReport>),
+
+    /// A surface has only one side, which was to be refused.
+    #[error(
+        "{} and {} cannot agree on what is outside at the edge {}–{}, nor can faces at {} other edges; \
+         `OneSided::Cut` cuts there", faces[0], faces[1], vertices[0], vertices[1], edges - 1
+    )]
+    OneSided {
+        /// At how many edges the surface would have to be cut.
+        edges: usize,
+        /// The ends of the first.
+        vertices: [VertexId; 2],
+        /// The faces there.
+        faces: [FaceId; 2],
+    },
 
     /// An option has a value outside its range.
     #[error("option `{name}` is {value}, but must be {expected}")]

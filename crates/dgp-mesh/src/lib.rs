@@ -7,6 +7,8 @@
 //! | measures | [`measure`]: lengths, areas, angles, normals, volume, boxes |
 //! | topology | [`topology`]: components, holes, Euler characteristic, genus |
 //! | representations | [`PolygonSoup`], [`IndexedFaceSet`] with its [`FaceList`], [`EdgeList`], [`Connectivity`], [`Mesh`] |
+//! | what is wrong | [`defects`] and its [`DefectReport`] |
+//! | what mends it | [`repair`](repair()), [`repair_faces`], [`RepairOptions`] |
 //! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
 //! | triangles from polygons | [`triangulate()`] [`triangulate_faces`] [`triangulate_polygon`] |
 //! | edits | [`Editor`], [`reorder`], [`Mesh::reverse`], [`Mesh::validate`] |
@@ -39,6 +41,7 @@ mod mesh;
 mod navigate;
 pub mod parallel;
 mod progress;
+mod repair;
 mod set;
 pub mod shapes;
 mod soup;
@@ -53,6 +56,8 @@ pub use attribute::{
     AttributeColumn, AttributeTable, AttributeValue, COLOR, Color, GROUP, Label, MATERIAL, NORMAL,
     Normal, OBJECT, SMOOTHING, UV,
 };
+pub use build::strict_mesh;
+pub use check::{Defect, DefectKind, DefectReport, Elements, Groups, Severity, defects};
 pub use connectivity::{Connectivity, NotManifold};
 pub use edge_list::EdgeList;
 pub use edit::{Compaction, EditError, Editor, FaceRemoval, Renumbering, reorder};
@@ -63,6 +68,10 @@ pub use indexed::IndexedFaceSet;
 pub use map::{CornerMap, EdgeMap, FaceMap, HalfedgeMap, IdMap, VertexMap};
 pub use mesh::{Attributes, Mesh};
 pub use progress::{Callback, Cancelled, Progress};
+pub use repair::{
+    Change, CrowdedEdges, Facing, FlatFaces, IsolatedVertices, KeepComponents, OneSided,
+    RepairAction, RepairOptions, RepairReport, repair, repair_faces,
+};
 pub use set::{EdgeSet, FaceSet, HalfedgeSet, IdSet, VertexSet};
 pub use soup::PolygonSoup;
 pub use triangulate::{

@@ -21,7 +21,7 @@ use glam::DVec3;
 
 use crate::{
     AttributeTable, CornerId, Error, FaceId, FaceList, IndexedFaceSet, Progress, VertexId,
-    VertexMap,
+    VertexMap, check::Repeats,
 };
 
 /// Which vertices are at the same place.
@@ -178,17 +178,8 @@ pub(crate) fn seams(
 
 /// The faces that name a vertex twice in `after` but not in `before`.
 fn newly_repeating(before: &FaceList, after: &FaceList) -> Vec<FaceId> {
-    let mut sorted = Vec::new();
-    let mut repeats = |face: &[VertexId]| {
-        if let [a, b, c] = *face {
-            return a == b || b == c || c == a;
-        }
-        sorted.clear();
-        sorted.extend_from_slice(face);
-        sorted.sort_unstable();
-        sorted.windows(2).any(|pair| pair[0] == pair[1])
-    };
-    let new = after.iter().filter(|&(f, face)| repeats(face) && !repeats(before.face(f)));
+    let mut repeats = Repeats::default();
+    let new = after.iter().filter(|&(f, face)| repeats.any(face) && !repeats.any(before.face(f)));
     new.map(|(f, _)| f).collect()
 }
 

@@ -57,7 +57,7 @@ fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
 /// A side of a face in the bucket of its smaller vertex. From the top: 32 bits for the larger vertex,
 /// one for the direction (0 if the side leads from the smaller to the larger), 31 for its corner.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side(u64);
+pub(crate) struct Side(u64);
 
 impl Side {
     /// Comes after every side.
@@ -70,24 +70,24 @@ impl Side {
     }
 
     #[inline]
-    fn larger(self) -> usize {
+    pub(crate) fn larger(self) -> usize {
         (self.0 >> 32) as usize
     }
 
     #[inline]
-    fn is_forward(self) -> bool {
+    pub(crate) fn is_forward(self) -> bool {
         self.0 >> 31 & 1 == 0
     }
 
     #[inline]
-    fn corner(self) -> usize {
+    pub(crate) fn corner(self) -> usize {
         self.0 as usize & (FaceList::MAX_CORNERS - 1)
     }
 }
 
 /// The sides of all faces in sorted buckets by smaller vertex. That of v is `[v]..[v + 1]` of the
 /// second list.
-fn sorted_sides(vertex_count: usize, faces: &FaceList) -> (Vec<Side>, Vec<u32>) {
+pub(crate) fn sorted_sides(vertex_count: usize, faces: &FaceList) -> (Vec<Side>, Vec<u32>) {
     let mut starts = vec![0_u32; vertex_count + 2];
     for_each_side(faces, |_, a, b| starts[a.index().min(b.index()) + 2] += 1);
     for v in 2..starts.len() {

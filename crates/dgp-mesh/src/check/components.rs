@@ -1,0 +1,147 @@
+//! Faces joined across edges, and what closed components enclose.
+
+use glam::DVec3;
+
+use super::{Groups, adjacency::Adjacency, union::Union};
+use crate::{FaceId, FaceMap, VertexId, VertexMap};
+
+/// A volume smaller than this, relative to the sum of the sizes of its parts, may be rounding error.
+const VOLUME_ERROR: f64 = 1e-12;
+
+/// The connected components of faces.
+pub(crate) struct Components {
+    /// The first face of the component of each face.
+    firsts: FaceMap<FaceId>,
+}
+
+impl Components {
+    pub(crate) fn new(adjacency: &Adjacency) -> Self {
+        let mut union = Union::new(adjacency.faces.len());
+        for side in 0..adjacency.side_count() {
+            if let Some(mate) = adjacency.mate(side).filter(|&mate| mate > side) {
+                union.join(adjacency.face(side).index(), adjacency.face(mate).index());
+            }
+        }
+        let first = |f: FaceId| FaceId::new(union.find(f.index()));
+        Components { firsts: FaceMap::from_fn(adjacency.faces.len(), first) }
+    }
+
+    /// The first face of the component of `f`, by which it is known.
+    pub(crate) fn first(&self, f: FaceId) -> FaceId {
+        self.firsts[f]
+    }
+
+    /// The faces of each component whose first face is `wanted`.
+    pub(crate) fn groups(&self, wanted: impl Fn(FaceId) -> bool) -> Groups<FaceId> {
+        let mut members: Vec<(FaceId, FaceId)> =
+            self.firsts.iter().map(|(f, &first)| (first, f)).filter(|m| wanted(m.0)).collect();
+        members.sort_unstable();
+        let mut groups = Groups::new();
+        for group in members.chunk_by(|a, b| a.0 == b.0) {
+            groups.push(group.iter().map(|&(_, f)| f));
+        }
+        groups
+    }
+}
+
+/// The closed components that are consistently oriented, and how they lie in each other.
+pub(crate) struct Solids<'a> {
+    positions: &'a VertexMap<DVec3>,
+    adjacency: &'a Adjacency,
+    faces: Groups<FaceId>,
+    boxes: Vec<(DVec3, DVec3)>,
+}
+
+impl<'a> Solids<'a> {
+    pub(crate) fn new(positions: &'a VertexMap<DVec3>, adjacency: &'a Adjacency) -> Self {
+        let mut closed = FaceMap::filled(adjacency.faces.len(), true);
+        let components = Components::new(adjacency);
+        for side in (0..adjacency.side_count()).filter(|&side| adjacency.mate(side).is_none()) {
+            closed[components.first(adjacency.face(side))] = false;
+        }
+        for pair in &adjacency.misoriented {
+            closed[components.first(adjacency.face(pair[0]))] = false;
+        }
+        for (f, face) in adjacency.faces.iter() {
+            if !face.iter().all(|&v| positions[v].is_finite()) {
+                closed[components.first(f)] = false;
+            }
+        }
+        let faces = components.groups(|first| closed[first]);
+        let bounds = |group: &[FaceId]| {
+            let corners = group.iter().flat_map(|&f| adjacency.faces.face(f));
+            let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            corners.map(|&v| positions[v]).fold(start, |(min, max), p| (min.min(p), max.max(p)))
+        };
+        let boxes = faces.iter().map(bounds).collect();
+        Solids { positions, adjacency, faces, boxes }
+    }
+
+    /// The ones that are inside out: their volume is negative, and they are not the wall of a cavity
+    /// within others.
+    pub(crate) fn inward(&self) -> Groups<FaceId> {
+        let mut inward = Groups::new();
+        for (k, group) in self.faces.iter().enumerate() {
+            if self.has_negative_volume(k, group) && !self.is_cavity(k, group) {
+                inward.push(group.iter().copied());
+            }
+        }
+        inward
+    }
+
+    /// Whether the volume is negative beyond rounding. Relative to the size of the box.
+    fn has_negative_volume(&self, k: usize, group: &[FaceId]) -> bool {
+        let (min, max) = self.boxes[k];
+        let center = min.midpoint(max);
+        let size = (max - min).max_element();
+        if !(size > 0.0 && size.is_finite()) {
+            return false;
+        }
+        let (mut sum, mut parts) = (0.0, 0.0);
+        for &f in group {
+            self.for_each_triangle(f, |triangle| {
+                let [a, b, c] = triangle.map(|v| (self.positions[v] - center) / size);
+                let part = a.dot(b.cross(c));
+                sum += part;
+                parts += part.abs();
+            });
+        }
+        sum < -VOLUME_ERROR * parts
+    }
+
+    /// Whether an odd number of other closed components surround this one.
+    fn is_cavity(&self, k: usize, group: &[FaceId]) -> bool {
+        let Some(&v) = group.first().and_then(|&f| self.adjacency.faces.face(f).first()) else {
+            return false;
+        };
+        let (min, max) = self.boxes[k];
+        let others = self.faces.iter().enumerate().filter(|&(j, _)| {
+            let (other_min, other_max) = self.boxes[j];
+            j != k && other_min.cmplt(min).all() && other_max.cmpgt(max).all()
+        });
+        others.filter(|(_, other)| self.winds_around(other, v)).count() % 2 == 1
+    }
+
+    /// Whether a component winds around a vertex an odd number of times, by the sum of the solid
+    /// angles of its triangles (van Oosterom & Strackee 1983).
+    fn winds_around(&self, group: &[FaceId], v: VertexId) -> bool {
+        let point = self.positions[v];
+        let mut half_angles = 0.0;
+        for &f in group {
+            self.for_each_triangle(f, |triangle| {
+                let [a, b, c] = triangle.map(|w| (self.positions[w] - point).normalize_or_zero());
+                let numerator = a.dot(b.cross(c));
+                let denominator = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
+                half_angles += numerator.atan2(denominator);
+            });
+        }
+        (half_angles / std::f64::consts::TAU).round() as i64 % 2 != 0
+    }
+
+    fn for_each_triangle(&self, f: FaceId, mut visit: impl FnMut([VertexId; 3])) {
+        let [first, rest @ ..] = self.adjacency.faces.face(f) else { return };
+        for pair in rest.windows(2) {
+            visit([*first, pair[0], pair[1]]);
+        }
+    }
+}
