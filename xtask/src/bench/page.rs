@@ -62,8 +62,11 @@ fn section(page: &mut String, rows: &[&Value]) {
     );
     for row in rows {
         let peers: Vec<&Value> = row["peers"].as_array().into_iter().flatten().collect();
-        let medians =
-            peers.iter().copied().chain([&row["ours"]]).filter_map(|series| series["median"].as_f64());
+        let medians = peers
+            .iter()
+            .copied()
+            .chain([&row["ours"]])
+            .filter_map(|series| series["median"].as_f64());
         let largest = medians.fold(0.0, f64::max);
         line(page, text(&row["input"]), "dgp", &row["ours"], largest);
         for peer in peers {
