@@ -96,6 +96,15 @@ pub enum Error {
         faces: [FaceId; 2],
     },
 
+    /// An edge has a weight that no shortest path can be found with.
+    #[error("{edge} has weight {weight}; give each edge one that is not negative")]
+    InvalidWeight {
+        /// The first such edge.
+        edge: EdgeId,
+        /// Its weight.
+        weight: f64,
+    },
+
     /// An option has a value outside its range.
     #[error("option `{name}` is {value}, but must be {expected}")]
     InvalidOption {

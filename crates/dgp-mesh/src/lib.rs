@@ -12,6 +12,7 @@
 //! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
 //! | triangles from polygons | [`triangulate()`] [`triangulate_faces`] [`triangulate_polygon`] |
 //! | edits | [`Editor`], [`reorder`], [`Mesh::reverse`], [`Mesh::validate`] |
+//! | search | [`graph`]: breadth-first, Dijkstra, A*, adjacency lists |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
 //!
 //! ```
@@ -33,8 +34,10 @@ mod edge_list;
 mod edit;
 mod error;
 mod face_list;
+pub mod graph;
 mod id;
 mod indexed;
+pub mod linear;
 mod map;
 pub mod measure;
 mod mesh;

@@ -114,7 +114,7 @@ fn vector_area(surface: &impl Surface, f: FaceId) -> DVec3 {
 
 /// The unit normal of `f`, or zero.
 #[inline]
-fn normal(surface: &impl Surface, f: FaceId) -> DVec3 {
+pub(crate) fn normal(surface: &impl Surface, f: FaceId) -> DVec3 {
     let positions = surface.vertex_positions();
     if let Some([a, b, c]) = surface.corners_of_triangle(f) {
         let (u, v) = (half_side(positions[a], positions[b]), half_side(positions[a], positions[c]));

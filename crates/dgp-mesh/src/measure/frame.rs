@@ -36,6 +36,12 @@ impl Frame {
         point * self.scale.down - self.center
     }
 
+    /// A point of this frame in space.
+    #[inline]
+    pub(crate) fn global(&self, local: DVec3) -> DVec3 {
+        (local + self.center) * self.scale.up
+    }
+
     /// A length, area, volume, … (by `power`) of this frame in space.
     #[inline]
     pub(crate) fn measure(&self, local: f64, power: u32) -> f64 {

@@ -1,0 +1,32 @@
+//! Search along edges.
+//!
+//! | question | function |
+//! |---|---|
+//! | how many edges away is everything | [`breadth_first`] |
+//! | how far is everything along edges, and which way | [`dijkstra`] |
+//! | which is the shortest way to one vertex | [`astar`] |
+//! | the neighbors of all vertices as lists, to visit them often | [`VertexAdjacency`] |
+//! | elements by a priority that changes | [`IndexedHeap`] |
+//!
+//! ```
+//! use dgp_mesh::{Progress, VertexId, graph::{Until, dijkstra}, measure::edge_lengths, shapes::cube};
+//!
+//! let cube = cube();
+//! let start = VertexId::new(0);
+//! let found = dijkstra(&cube, &edge_lengths(&cube), &[start], Until::AllReached, Progress::NONE)?;
+//! let farthest = found.order.last().copied().expect("eight vertices");
+//! assert_eq!(found.path(&cube, farthest).map(|path| path.len()), Some(3));
+//! # Ok::<(), dgp_mesh::Error>(())
+//! ```
+
+mod adjacency;
+mod astar;
+mod breadth_first;
+mod dijkstra;
+mod heap;
+
+pub use adjacency::VertexAdjacency;
+pub use astar::{Path, astar};
+pub use breadth_first::{BreadthFirst, breadth_first};
+pub use dijkstra::{ShortestPaths, Until, dijkstra};
+pub use heap::IndexedHeap;
