@@ -13,10 +13,10 @@ use dgp_mesh::{
 };
 
 /// Times `run` on a sphere of that many faces.
-fn bench<T>(c: &mut Criterion, name: &str, faces: usize, run: impl FnMut() -> T) {
+fn bench<T>(c: &mut Criterion, name: &str, faces: usize, mut run: impl FnMut() -> T) {
     let mut group = c.benchmark_group(name);
     group.sample_size(10);
-    group.bench_function(BenchmarkId::new("icosphere", faces), |b| b.iter(run));
+    group.bench_function(BenchmarkId::new("icosphere", faces), |b| b.iter(&mut run));
     group.finish();
 }
 
