@@ -15,9 +15,9 @@ pub(crate) fn clip(
     corners: [DVec3; 3],
     camera: &Camera,
 ) -> impl Iterator<Item = [Landed; 3]> + use<> {
-    let mut polygon = Polygon { points: [DVec3::ZERO; 8], len: 0 };
+    let mut polygon = Polygon::EMPTY;
     if corners.iter().all(|p| p.is_finite()) {
-        corners.into_iter().for_each(|p| polygon.push(p));
+        polygon = Polygon::of(corners);
     }
     // A little inside, so that rounding does not put the new corners outside again.
     let near = camera.near * (1.0 + 1e-9);
@@ -40,6 +40,14 @@ struct Polygon {
 }
 
 impl Polygon {
+    const EMPTY: Polygon = Polygon { points: [DVec3::ZERO; 8], len: 0 };
+
+    fn of(corners: [DVec3; 3]) -> Self {
+        let mut points = [DVec3::ZERO; 8];
+        points[..3].copy_from_slice(&corners);
+        Polygon { points, len: 3 }
+    }
+
     fn push(&mut self, p: DVec3) {
         self.points[self.len] = p;
         self.len += 1;
@@ -47,7 +55,7 @@ impl Polygon {
 
     /// The part where `height` is not negative.
     fn cut(&self, height: impl Fn(DVec3) -> f64) -> Polygon {
-        let mut rest = Polygon { points: [DVec3::ZERO; 8], len: 0 };
+        let mut rest = Polygon::EMPTY;
         for i in 0..self.len {
             let (p, q) = (self.points[i], self.points[(i + 1) % self.len]);
             let (above, next) = (height(p), height(q));

@@ -272,7 +272,9 @@ impl Range {
             }
             Range::Full => (quantile(0.0), quantile(1.0)),
             Range::Symmetric => {
-                finite.iter_mut().for_each(|x| *x = x.abs());
+                for x in &mut finite {
+                    *x = x.abs();
+                }
                 let rank = (0.98 * (finite.len() - 1) as f64).round() as usize;
                 let x = *finite.select_nth_unstable_by(rank, f64::total_cmp).1;
                 (-x, x)

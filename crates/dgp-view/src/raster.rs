@@ -316,7 +316,9 @@ fn draw_triangle(
             values[1] += sides[1].right;
             values[2] += sides[2].right;
         }
-        sides.iter_mut().for_each(|side| side.value += side.below);
+        for side in &mut sides {
+            side.value += side.below;
+        }
         start += below;
     }
 }

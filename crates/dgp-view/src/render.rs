@@ -60,7 +60,9 @@ pub fn render(
     }
     if options.framing == Framing::Shared {
         let all = views.iter().fold(Extent::EMPTY, |extent, view| extent.union(view.extent));
-        views.iter_mut().for_each(|view| view.extent = all);
+        for view in &mut views {
+            view.extent = all;
+        }
     }
     let mut canvas = Canvas { image: &mut image, encoder: &encoder, report: &mut report };
     let drawing = progress.part(0.3, 1.0);
@@ -137,7 +139,9 @@ impl<'a> PanelView<'a> {
         let camera = self.camera(options.view);
         for body in &mut self.bodies {
             parallel::for_each_chunk(&mut body.positions, parallel::BLOCK, |_, positions| {
-                positions.iter_mut().for_each(|p| *p -= camera.eye);
+                for p in positions {
+                    *p -= camera.eye;
+                }
             });
         }
         let pixel = f64::from(options.samples);

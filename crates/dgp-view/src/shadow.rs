@@ -52,7 +52,9 @@ impl Shadow {
         for body in bodies.iter().filter(|body| body.style.fill == Fill::Shaded) {
             let mut positions = body.positions.clone();
             parallel::for_each_chunk(&mut positions, parallel::BLOCK, |_, positions| {
-                positions.iter_mut().for_each(|p| *p = turned(*p));
+                for p in positions {
+                    *p = turned(*p);
+                }
             });
             flat.push(Body::plain(positions, body.triangles.clone()));
         }

@@ -75,8 +75,8 @@ pub struct Stroke {
     pub width: f64,
 }
 
-/// Which vertices are drawn as points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Which vertices are drawn as points, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Points {
     /// Which.
     pub shown: PointsShown,
@@ -219,12 +219,6 @@ impl Stroke {
     pub const THIN: Stroke = Stroke { color: Color([0.07, 0.09, 0.13, 1.0]), width: 1.0 };
     /// The lines of a boundary.
     pub const BOLD: Stroke = Stroke { color: Color([0.78, 0.10, 0.16, 1.0]), width: 3.0 };
-}
-
-impl Default for Points {
-    fn default() -> Self {
-        Points { shown: PointsShown::default(), size: PointSize::default() }
-    }
 }
 
 impl Mark {

@@ -41,11 +41,12 @@ impl Ticks {
         let plain = largest < PLAIN_DIGITS + 1 && exponent >= -PLAIN_DIGITS;
         let label = |&x: &f64| {
             let x = if x.abs() < 0.5 * step { 0.0 } else { x };
-            if plain {
-                format!("{x:.*}", (-exponent).max(0) as usize)
-            } else {
-                scientific(x, (x.abs().log10().floor() as i32 - exponent).clamp(0, 12) as usize)
+            if plain || x == 0.0 {
+                return format!("{x:.*}", if plain { (-exponent).max(0) as usize } else { 0 });
             }
+            // As many digits as tell neighbors apart.
+            let digits = x.abs().log10().floor() as i32 - exponent;
+            format!("{x:.*e}", digits.clamp(0, 12) as usize)
         };
         let labels = values.iter().map(label).collect();
         Ticks { values, labels }
@@ -55,14 +56,7 @@ impl Ticks {
 /// A number by itself.
 fn general(x: f64) -> String {
     let plain = x == 0.0 || (1e-4..1e5).contains(&x.abs());
-    if plain { format!("{}", (x * 1e6).round() / 1e6) } else { scientific(x, 3) }
-}
-
-fn scientific(x: f64, digits: usize) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    format!("{x:.digits$e}")
+    if plain { format!("{}", (x * 1e6).round() / 1e6) } else { format!("{x:.3e}") }
 }
 
 #[cfg(test)]
