@@ -1,6 +1,12 @@
 //! What the methods share: validation, iterations, the volume, the report.
 
-use dgp_mesh::{DVec3, Mesh, Progress, VertexId, VertexMap, VertexSet, measure, parallel};
+use std::mem;
+
+use dgp_mesh::{
+    DVec3, FaceId, Mesh, Progress, VertexId, VertexMap, VertexSet,
+    measure::{self, Surface},
+    parallel,
+};
 
 use super::{Boundary, SmoothReport, Volume, rings::Rings};
 use crate::Error;
@@ -27,18 +33,19 @@ pub(super) fn run(
     if task.volume == Volume::Keep {
         check_volume_can_be_kept(rim, task.fixed)?;
     }
-    let original = mesh.positions().clone();
+    let volume_of = |positions: &mut Vec<DVec3>| {
+        let placed = Placed { mesh, positions: mem::take(positions).into() };
+        let volume = rim.is_none().then(|| measure::volume(&placed));
+        *positions = placed.positions.into_values();
+        volume
+    };
+    let original = mesh.positions();
     let unit = power_of_two_near(original.values());
     let rings = Rings::new(mesh, task.fixed, task.boundary);
     let mut positions: Vec<DVec3> = original.values().iter().map(|&p| p * unit).collect();
-    let volume_of = |mesh: &mut Mesh, positions: &[DVec3]| {
-        mesh.set_positions(positions.to_vec().into());
-        measure::volume(&*mesh)
-    };
-    let is_closed = rim.is_none();
-    let volume_before = is_closed.then(|| volume_of(mesh, &positions));
+    let volume_before = volume_of(&mut positions);
 
-    let mut room = positions.clone();
+    let mut room = vec![DVec3::ZERO; positions.len()];
     let mut stopped = Ok(());
     for iteration in 0..task.iterations {
         stopped = task.progress.report(iteration as f64 / task.iterations as f64);
@@ -47,47 +54,71 @@ pub(super) fn run(
         }
         step(&rings, &mut positions, &mut room);
     }
-    let mut volume_after = is_closed.then(|| volume_of(mesh, &positions));
-    if let (Volume::Keep, Some(before), Some(after), true) =
-        (task.volume, volume_before, volume_after, stopped.is_ok())
-    {
+    drop(room);
+    let mut volume_after = volume_of(&mut positions);
+    let is_rescaled = task.volume == Volume::Keep && stopped.is_ok();
+    if let (true, Some(before), Some(after)) = (is_rescaled, volume_before, volume_after) {
         let ratio = before / after;
         if !(ratio > 0.0 && ratio.is_finite()) {
-            mesh.set_positions(original);
-            let per_unit = unit.powi(3).recip();
-            return Err(Error::VolumeLost { before: before * per_unit, after: after * per_unit });
+            let [before, after] = [before, after].map(|volume| volume / unit / unit / unit);
+            return Err(Error::VolumeLost { before, after });
         }
         scale_about_mean(&mut positions, ratio.cbrt());
-        volume_after = Some(volume_of(mesh, &positions));
+        volume_after = volume_of(&mut positions);
     }
 
-    let is_rescaled = task.volume == Volume::Keep;
-    for (v, p) in positions.iter_mut().enumerate() {
-        // What stays does so bit for bit, however small it is beside the rest.
-        *p =
-            if rings.is_fixed(v) && !is_rescaled { original.values()[v] } else { clamp(*p / unit) };
-    }
-    let moved: VertexMap<DVec3> = positions.into();
-    let (sum, max_displacement) = parallel::reduce(
-        moved.len(),
-        (0.0, 0.0_f64),
-        |v: VertexId| {
-            let distance = (unit * moved[v] - unit * original[v]).length();
-            (distance, distance)
-        },
-        |a, b| (a.0 + b.0, a.1.max(b.1)),
-    );
+    let moves = |v: usize| is_rescaled || !rings.is_fixed(v);
+    let blocks = parallel::map_blocks(positions.len(), parallel::BLOCK, |range| {
+        let moving = range.filter(|&v| moves(v));
+        moving.fold((0, 0.0, 0.0_f64), |(count, sum, max), v| {
+            let distance = positions[v].distance(unit * original.values()[v]);
+            (count + 1, sum + distance, max.max(distance))
+        })
+    });
+    let (free_vertices, sum, max) =
+        blocks.into_iter().fold((0, 0.0, 0.0_f64), |a, b| (a.0 + b.0, a.1 + b.1, a.2.max(b.2)));
+    parallel::for_each_chunk(&mut positions, parallel::BLOCK, |first, chunk| {
+        for (i, p) in chunk.iter_mut().enumerate() {
+            // What stays does so bit for bit, however small it is beside the rest.
+            let v = first + i;
+            *p = if moves(v) { clamp(*p / unit) } else { original.values()[v] };
+        }
+    });
     let report = SmoothReport {
         iterations: task.iterations,
-        free_vertices: (0..moved.len()).filter(|&v| !rings.is_fixed(v)).count(),
+        free_vertices,
         volume_before: volume_before.map(|volume| volume / unit / unit / unit),
         volume_after: volume_after.map(|volume| volume / unit / unit / unit),
-        mean_displacement: sum / moved.len().max(1) as f64 / unit,
-        max_displacement: max_displacement / unit,
+        mean_displacement: sum / positions.len().max(1) as f64 / unit,
+        max_displacement: max / unit,
     };
-    mesh.set_positions(moved);
+    mesh.set_positions(positions.into());
     stopped?;
     Ok(report)
+}
+
+/// The faces of a mesh with other positions.
+struct Placed<'a> {
+    mesh: &'a Mesh,
+    positions: VertexMap<DVec3>,
+}
+
+impl Surface for Placed<'_> {
+    fn vertex_positions(&self) -> &VertexMap<DVec3> {
+        &self.positions
+    }
+
+    fn number_of_faces(&self) -> usize {
+        self.mesh.face_count()
+    }
+
+    fn polygon(&self, f: FaceId) -> impl Iterator<Item = VertexId> + Clone {
+        self.mesh.polygon(f)
+    }
+
+    fn corners_of_triangle(&self, f: FaceId) -> Option<[VertexId; 3]> {
+        self.mesh.triangle(f)
+    }
 }
 
 /// `value`, if it is above 0 and at most 1.
