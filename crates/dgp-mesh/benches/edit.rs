@@ -3,7 +3,9 @@
 
 use std::hint::black_box;
 
-use criterion::{BatchSize, BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement};
+use criterion::{
+    BatchSize, BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement,
+};
 use dgp_mesh::{DVec3, EdgeId, Editor, Mesh, VertexId, reorder, shapes, shapes::Random};
 
 type Group<'a> = BenchmarkGroup<'a, measurement::WallTime>;
@@ -89,18 +91,21 @@ fn collapsed(mesh: &mut Mesh) -> Editor<'_> {
         if editor.vertex_count() == target {
             break;
         }
-        let free = editor.mesh().vertex_halfedges(v).find(|&h| editor.can_collapse(h).is_ok());
-        if let Some(h) = free {
-            editor.collapse(h).expect("it can be collapsed");
+        let start = editor.mesh().vertex_halfedge(v);
+        let mut spoke = start;
+        while let Some(h) = spoke
+            && editor.collapse(h).is_err()
+        {
+            spoke = Some(editor.mesh().ccw(h)).filter(|&h| Some(h) != start);
         }
     }
     editor
 }
 
 fn ring_sums(mesh: &Mesh) -> DVec3 {
-    let sums = mesh.vertices().map(|v| -> DVec3 {
-        mesh.vertex_neighbors(v).map(|w| mesh.position(w)).sum()
-    });
+    let sums = mesh
+        .vertices()
+        .map(|v| -> DVec3 { mesh.vertex_neighbors(v).map(|w| mesh.position(w)).sum() });
     sums.sum()
 }
 
