@@ -75,11 +75,11 @@ pub fn area(surface: &impl Surface) -> f64 {
     frame.measure(sum, 2)
 }
 
-/// The vector area of `f` in `frame`.
+/// The vector area of `f` at the scale of `frame`.
 #[inline]
 pub(crate) fn local_vector_area(surface: &impl Surface, frame: &Frame, f: FaceId) -> DVec3 {
     let positions = surface.vertex_positions();
-    let point = |v| frame.local(positions[v]);
+    let point = |v| frame.scaled(positions[v]);
     if let Some([a, b, c]) = surface.corners_of_triangle(f) {
         let a = point(a);
         return 0.5 * (point(b) - a).cross(point(c) - a);

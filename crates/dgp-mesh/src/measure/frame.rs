@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Surface, bounding_box, scale::Scale};
+use super::{BoundingBox, Surface, bounding_box, scale::Scale};
 
 /// The middle of a mesh and the power of two of its size.
 ///
@@ -18,7 +18,16 @@ pub(crate) struct Frame {
 impl Frame {
     /// The frame of the vertices of `surface` that are finite.
     pub(crate) fn of(surface: &impl Surface) -> Self {
-        let Some(bounds) = bounding_box(surface) else {
+        Frame::of_box(bounding_box(surface))
+    }
+
+    /// The frame of `points`.
+    pub(crate) fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        Frame::of_box(BoundingBox::of_points(points))
+    }
+
+    fn of_box(bounds: Option<BoundingBox>) -> Self {
+        let Some(bounds) = bounds else {
             return Frame { center: DVec3::ZERO, scale: Scale::of(0.0) };
         };
         // Half the size cannot overflow, the size can.
@@ -28,6 +37,12 @@ impl Frame {
             scale = Scale::of(bounds.max.abs().max_element());
         }
         Frame { center: bounds.center() * scale.down, scale }
+    }
+
+    /// `point` at the scale of this frame, but not moved: exact, and all that differences need.
+    #[inline]
+    pub(crate) fn scaled(&self, point: DVec3) -> DVec3 {
+        point * self.scale.down
     }
 
     /// `point` in this frame.
