@@ -3,7 +3,7 @@
 use dgp_mesh::{DVec2, FaceId, FaceSet};
 
 use crate::{
-    Checker, Elements, Error, Field, Model, NOT_A_NUMBER, Paint, Scalars, Shape,
+    Checker, Elements, Error, Field, Model, NOT_A_NUMBER, Paint, PointSize, Scalars, Shape,
     color::{Linear, linear, mix, scale},
     color_map::ColorTable,
     paint::fraction,
@@ -263,10 +263,25 @@ impl Place {
     }
 }
 
-/// An error if a style names elements its shape does not have.
-pub(crate) fn check_marks(model: &Model<'_>, place: Place) -> Result<(), Error> {
-    let shape = &model.shape;
-    for mark in &model.style.marks {
+/// The widest lines and points, in pixels: wider ones are mistakes, and take long to draw.
+const WIDEST: f64 = 1000.0;
+
+/// An error if a width is out of range.
+fn check_width(name: &'static str, width: f64) -> Result<(), Error> {
+    let fits = (0.0..=WIDEST).contains(&width);
+    if fits { Ok(()) } else { Err(Error::option(name, width, "from 0 to 1000 pixels")) }
+}
+
+/// An error if a style has a width out of range, or names elements its shape does not have.
+pub(crate) fn check_style(model: &Model<'_>, place: Place) -> Result<(), Error> {
+    let (shape, style) = (&model.shape, &model.style);
+    check_width("wireframe.width", style.wireframe.width)?;
+    check_width("boundary.width", style.boundary.width)?;
+    if let PointSize::Pixels(size) = style.points.size {
+        check_width("points.size", size)?;
+    }
+    for mark in &style.marks {
+        check_width("marks.width", mark.width)?;
         match (&mark.elements, shape) {
             (Elements::Vertices(set), _) => {
                 for v in set.iter() {

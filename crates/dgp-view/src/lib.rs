@@ -28,6 +28,7 @@ mod clip;
 mod color;
 mod color_map;
 mod error;
+mod expose;
 mod font;
 mod image;
 mod ink;

@@ -11,9 +11,12 @@
 //! - Reference: Pineda, "A parallel algorithm for polygon rasterization", SIGGRAPH 1988; Burns, Hunt,
 //!   "The visibility buffer", Journal of Computer Graphics Techniques 2(2), 2013.
 
-use std::ops::Range;
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicBool, AtomicUsize, Ordering},
+};
 
-use dgp_mesh::{DVec3, VertexId, parallel};
+use dgp_mesh::{Cancelled, DVec3, Progress, VertexId, parallel};
 
 use crate::{
     BackFaces, Fill,
@@ -169,8 +172,41 @@ pub(crate) fn seen(key: u64) -> Option<(u32, f64)> {
     (key != NOTHING).then(|| (key as u32, (key >> 32) as f64 / 4_294_967_294.0))
 }
 
+/// Equal steps of a computation that threads take in any order.
+pub(crate) struct Steps<'p> {
+    progress: Progress<'p>,
+    count: usize,
+    done: AtomicUsize,
+    cancelled: AtomicBool,
+}
+
+impl<'p> Steps<'p> {
+    pub(crate) fn new(progress: Progress<'p>, count: usize) -> Self {
+        Steps { progress, count, done: AtomicUsize::new(0), cancelled: AtomicBool::new(false) }
+    }
+
+    /// Reports a step before it is taken; once one is cancelled, all later ones are.
+    pub(crate) fn one_more(&self) -> Result<(), Cancelled> {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) as f64 / self.count.max(1) as f64;
+        if self.cancelled.load(Ordering::Relaxed) || self.progress.report(done.min(1.0)).is_err() {
+            self.cancelled.store(true, Ordering::Relaxed);
+            return Err(Cancelled);
+        }
+        Ok(())
+    }
+
+    /// Whether all steps were taken.
+    pub(crate) fn finish(self) -> Result<(), Cancelled> {
+        if self.cancelled.into_inner() { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
 /// The key of every sample, row after row from the top.
-pub(crate) fn visibility(layers: &[Layer<'_>], camera: &Camera) -> Vec<u64> {
+pub(crate) fn visibility(
+    layers: &[Layer<'_>],
+    camera: &Camera,
+    progress: Progress<'_>,
+) -> Result<Vec<u64>, Cancelled> {
     let [width, height] = camera.size.map(|side| side as usize);
     // Enough bands for many threads, and few enough that triangles rarely lie in two.
     let band_rows = height.div_ceil(64).max(16);
@@ -178,7 +214,11 @@ pub(crate) fn visibility(layers: &[Layer<'_>], camera: &Camera) -> Vec<u64> {
     let bins: Vec<_> =
         layers.iter().map(|layer| bin(layer, camera, band_rows, band_count)).collect();
     let mut keys = vec![NOTHING; width * height];
+    let steps = Steps::new(progress, band_count);
     parallel::for_each_chunk(&mut keys, width * band_rows, |first, keys| {
+        if steps.one_more().is_err() {
+            return;
+        }
         let top = (first / width) as i64;
         let b = top as usize / band_rows;
         let rows = top..top + (keys.len() / width) as i64;
@@ -189,7 +229,8 @@ pub(crate) fn visibility(layers: &[Layer<'_>], camera: &Camera) -> Vec<u64> {
             }
         }
     });
-    keys
+    steps.finish()?;
+    Ok(keys)
 }
 
 /// The primitives that touch each band, by blocks of primitives.

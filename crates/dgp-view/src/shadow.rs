@@ -4,7 +4,7 @@
 //! heights above the ground. What is low casts a dark shadow, what is high a faint one; then the
 //! picture is blurred and laid on the plane through the lowest point.
 
-use dgp_mesh::{DVec3, parallel};
+use dgp_mesh::{Cancelled, DVec3, Progress, parallel};
 
 use crate::{
     Fill, Projection,
@@ -42,7 +42,8 @@ impl Shadow {
         up: DVec3,
         camera: &Camera,
         strength: f64,
-    ) -> Option<Self> {
+        progress: Progress<'_>,
+    ) -> Result<Option<Self>, Cancelled> {
         let across = up.any_orthonormal_vector();
         let axes = [across, up.cross(across), up];
         // Seen from below, toward the viewer is down.
@@ -62,13 +63,13 @@ impl Shadow {
         let extent = extents.fold(Extent::EMPTY, Extent::union);
         let size = (extent.max - extent.min).max_element();
         if extent.is_empty() || size <= 0.0 {
-            return None;
+            return Ok(None);
         }
         // The eye is at the origin; parallel light comes from it everywhere.
         let ground = -extent.max.z;
         let sees_ground = if camera.perspective { ground < 0.0 } else { up.z > 1e-6 };
         if !sees_ground {
-            return None;
+            return Ok(None);
         }
         let below = Camera::fit(&extent, &lens);
         for body in &mut flat {
@@ -80,7 +81,7 @@ impl Shadow {
             layers.push(triangle_layer(base, i, body, &below));
             base += body.triangles.len() as u32;
         }
-        let keys = visibility(&layers, &below);
+        let keys = visibility(&layers, &below, progress)?;
         let bottom = below.eye.z - extent.max.z;
         let dark = |&key: &u64| {
             let (_, order) = seen(key)?;
@@ -91,7 +92,7 @@ impl Shadow {
         for _ in 0..3 {
             darkness = blur_rows_and_turn(&blur_rows_and_turn(&darkness));
         }
-        Some(Shadow { axes, below, ground, darkness })
+        Ok(Some(Shadow { axes, below, ground, darkness }))
     }
 
     /// How dark the ground is where it is seen in this direction: right of and above the middle.

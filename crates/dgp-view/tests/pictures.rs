@@ -465,6 +465,11 @@ fn wrong_counts_options_and_sizes_are_refused() {
     let segment = vec![[VertexId::new(0), VertexId::new(3)]];
     let far = Style { marks: vec![Mark::new(Elements::Segments(segment))], ..Style::default() };
     assert!(matches!(fail(far, &plain(8)), Error::ElementOutOfRange { index: 3, count: 3, .. }));
+    for width in [-1.0, f64::NAN, 1e9] {
+        let wide = Style { boundary: Stroke { width, ..Stroke::BOLD }, ..Style::default() };
+        let error = fail(wide, &plain(8));
+        assert!(matches!(error, Error::InvalidOption { name: "boundary.width", .. }), "{error}");
+    }
     let view = View::From(DVec3::ZERO);
     let error = fail(Style::default(), &RenderOptions { view, ..plain(8) });
     assert!(matches!(error, Error::InvalidOption { name: "view", .. }), "{error}");
