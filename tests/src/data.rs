@@ -13,6 +13,14 @@ pub fn shared() -> Option<PathBuf> {
     named.into_iter().chain([beside]).find(|folder| folder.is_dir())
 }
 
+/// The folder of Debian's meshes: the environment variable `DGP_DEBIAN_DATA`, or where `cargo xtask
+/// data` unpacks them; `None` where there is neither.
+pub fn debian() -> Option<PathBuf> {
+    let named = env::var_os("DGP_DEBIAN_DATA").map(PathBuf::from);
+    let unpacked = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/data/cgal");
+    named.into_iter().chain([unpacked]).find(|folder| folder.is_dir())
+}
+
 /// The fixtures of this workspace.
 pub fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures")

@@ -63,7 +63,7 @@ impl ByteWriter {
         ByteWriter { bytes: Vec::new(), big: encoding == Encoding::BigEndian }
     }
 
-    put!(i32, u32, f32);
+    put!(i8, u8, i16, u16, i32, u32, f32, f64);
 }
 
 /// Whether a number of single precision holds `x` bit for bit.

@@ -9,6 +9,10 @@ pub const WEIGHT: &str = "weight";
 /// The name of color map indices of OFF faces (`i32` per face).
 pub const COLOR_INDEX: &str = "color_index";
 
+/// The name of the 16 bits that binary STL has for each facet, in which some programs keep colors
+/// (`u16` per face).
+pub const ATTRIBUTE_BYTES: &str = "attribute_bytes";
+
 /// The contents of a file: faces that index vertices, their attributes, and what else there was.
 ///
 /// A point cloud has no faces. See [`dgp_mesh::AttributeTable`] for the names of attributes.

@@ -46,6 +46,9 @@ impl Format {
     /// The format that `bytes` look like, if they look like any. XYZ and PWN cannot be told apart:
     /// lines of numbers are taken for XYZ.
     pub fn sniff(bytes: &[u8]) -> Option<Self> {
+        if crate::stl::is_binary(bytes) {
+            return Some(Format::Stl);
+        }
         let head = &bytes[..bytes.len().min(4096)];
         let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
         let lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);

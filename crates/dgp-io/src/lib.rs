@@ -33,17 +33,20 @@ mod file;
 mod format;
 mod obj;
 mod off;
+mod ply;
 mod print;
 mod report;
+mod stl;
 mod text;
 mod weld;
+mod xyz;
 
 use std::path::Path;
 
 use dgp_mesh::Progress;
 
 pub use document::{
-    COLOR_INDEX, Document, ExtraElement, NumberList, RowId, SubdivisionTag, WEIGHT,
+    ATTRIBUTE_BYTES, COLOR_INDEX, Document, ExtraElement, NumberList, RowId, SubdivisionTag, WEIGHT,
 };
 pub use error::{Cause, Error, Place};
 pub use format::{Encoding, Format};
@@ -88,7 +91,9 @@ pub fn read_bytes_with(
     let result = match format {
         Format::Obj => obj::read(bytes, progress),
         Format::Off => off::read(bytes, progress),
-        _ => Err(Fault::new(0, Cause::Unsupported { what: format.to_string() }).into()),
+        Format::Ply => ply::read(bytes, progress),
+        Format::Stl => stl::read(bytes, progress),
+        Format::Xyz | Format::Pwn => xyz::read(bytes, format, progress),
     };
     let place = |text: bool, at: usize| {
         if text { Place::Line(text::line(bytes, at)) } else { Place::Byte(at) }
@@ -161,7 +166,9 @@ fn chunks(
     let chunks = match format {
         Format::Obj => obj::write(document, &mut losses, progress),
         Format::Off => off::write(document, encoding, &mut losses, progress),
-        _ => Err(Error::UnsupportedEncoding { format, encoding }),
+        Format::Ply => ply::write(document, encoding, &mut losses, progress),
+        Format::Stl => stl::write(document, encoding, &mut losses, progress),
+        Format::Xyz | Format::Pwn => xyz::write(document, format, &mut losses, progress),
     }?;
     let bytes = chunks.iter().map(Vec::len).sum();
     Ok((chunks, WriteReport { format, encoding, bytes, losses: losses.0 }))

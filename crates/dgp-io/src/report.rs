@@ -114,12 +114,17 @@ impl Losses {
 impl Losses {
     /// Notes what only OBJ and PLY files hold.
     pub(crate) fn add_extras(&mut self, document: &Document) {
+        self.add_without_elements(document);
+        self.add_elements(document);
+    }
+
+    /// Notes what only OBJ files hold.
+    pub(crate) fn add_without_elements(&mut self, document: &Document) {
         self.add("lines have no place in the format", document.polylines.len());
         self.add("points have no place in the format", document.points.len());
         self.add("subdivision tags have no place in the format", document.tags.len());
         let libraries = document.material_libraries.len();
         self.add("material libraries have no place in the format", libraries);
-        self.add_elements(document);
     }
 
     /// Notes what only PLY files hold.

@@ -128,6 +128,24 @@ pub(crate) enum RowCount {
     Filled,
 }
 
+/// The byte at which the line `row` begins, counted from the line at `start`, blank lines left aside.
+pub(crate) fn row_byte(bytes: &[u8], start: usize, row: usize) -> usize {
+    let eol = if memchr::memchr(b'\n', bytes).is_some() { b'\n' } else { b'\r' };
+    let text = Text { bytes, eol, joined: false };
+    let mut cursor = text.cursor(start..bytes.len());
+    let mut left = row;
+    while !cursor.is_at_end() {
+        if !cursor.ends_line() {
+            if left == 0 {
+                break;
+            }
+            left -= 1;
+        }
+        cursor.skip_line();
+    }
+    cursor.at
+}
+
 /// The number of the line that byte `at` is in, from 1.
 pub(crate) fn line(bytes: &[u8], at: usize) -> usize {
     let before = &bytes[..at.min(bytes.len())];
@@ -233,8 +251,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Moves to the next word on this line or a later one, over comments; the bytes of the comments
-    /// go to `comment`.
+    /// Moves to the next word on this line or a later one, over comments, whose texts go
+    /// to `comment`.
     pub(crate) fn skip_to_word(&mut self, mut comment: impl FnMut(&'a [u8])) {
         loop {
             self.skip_blanks();
@@ -243,10 +261,34 @@ impl<'a> Cursor<'a> {
             }
             match self.peek() {
                 byte if byte == self.eol => self.at += 1,
-                b'#' => comment(self.rest_of_line()),
+                b'#' => comment(self.rest_of_line()[1..].trim_ascii()),
                 _ => return,
             }
         }
+    }
+
+    /// Moves to the next word on this line or a later one; there are no comments.
+    pub(crate) fn skip_blank_lines(&mut self) {
+        loop {
+            self.skip_blanks();
+            if self.is_at_end() || self.peek() != self.eol {
+                return;
+            }
+            self.at += 1;
+        }
+    }
+
+    /// The number that comes next on this line, which may end with a comma.
+    pub(crate) fn separated_number(&mut self) -> Result<f64, Fault> {
+        self.skip_blanks();
+        let start = self.at;
+        if let Ok((value, len)) = fast_float2::parse_partial::<f64, _>(&self.bytes[start..])
+            && self.bytes.get(start + len) == Some(&b',')
+        {
+            self.at = start + len + 1;
+            return Ok(value);
+        }
+        self.number()
     }
 
     /// The next word of this line, empty at its end.

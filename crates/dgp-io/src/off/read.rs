@@ -22,7 +22,7 @@ pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
     let mut parts = Parts::default();
     let mut comments = Vec::new();
     let mut oddities = Oddities::default();
-    cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
+    cursor.skip_to_word(|comment| comments.push(decoded(comment)));
     let start = cursor.at;
     let kind = if let Some((kind, len)) = keyword(cursor.word()) {
         cursor.at = start + len;
@@ -51,7 +51,7 @@ pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
         }
     }
     let header = Header::parse(&mut cursor, kind, &mut comments)?;
-    cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
+    cursor.skip_to_word(|comment| comments.push(decoded(comment)));
 
     let blocks = [RowCount::Lines, RowCount::Filled]
         .into_iter()
@@ -99,7 +99,7 @@ impl Header {
         kind: Kind,
         comments: &mut Vec<String>,
     ) -> Result<Self, Fault> {
-        cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
+        cursor.skip_to_word(|comment| comments.push(decoded(comment)));
         let start = cursor.at;
         let vertices = next_integer(cursor, comments)?;
         let faces = next_integer(cursor, comments)?;
@@ -140,7 +140,7 @@ impl Header {
 }
 
 fn next_integer(cursor: &mut Cursor<'_>, comments: &mut Vec<String>) -> Result<i64, Fault> {
-    cursor.skip_to_word(|comment| comments.push(decoded(&comment[1..])));
+    cursor.skip_to_word(|comment| comments.push(decoded(comment)));
     cursor.integer().map_err(|fault| fault.within("header"))
 }
 
@@ -361,7 +361,7 @@ impl Parts {
     #[inline]
     fn reach_word(&mut self, cursor: &mut Cursor<'_>, spread: Spread) {
         if spread == Spread::AnyLines {
-            cursor.skip_to_word(|comment| self.comments.push(decoded(&comment[1..])));
+            cursor.skip_to_word(|comment| self.comments.push(decoded(comment)));
         }
     }
 

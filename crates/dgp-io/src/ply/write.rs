@@ -1,0 +1,470 @@
+//! Writing PLY.
+
+use dgp_mesh::{
+    AttributeColumn, AttributeTable, AttributeValue, COLOR, Color, DVec2, DVec3, FaceId, FaceList,
+    Id, Label, NORMAL, Normal, Progress, UV, VertexId, parallel,
+};
+
+use super::{assemble::PREFIX, number::Scalar};
+use crate::{
+    Document, Encoding, Error, NumberList,
+    binary::{ByteWriter, is_f32},
+    print::{Printer, print_all},
+    report::Losses,
+};
+
+/// Rows a thread writes at a time.
+const BLOCK: usize = 1 << 14;
+
+/// A PLY file. Positions, normals and texture coordinates are `float` where that is exact, colors
+/// `uchar` where that is.
+pub(crate) fn write(
+    document: &Document,
+    encoding: Encoding,
+    losses: &mut Losses,
+    progress: Progress<'_>,
+) -> Result<Vec<Vec<u8>>, Error> {
+    let set = &document.set;
+    let mut vertex = Rows::new("vertex", set.vertex_count());
+    vertex.triple(["x", "y", "z"], set.positions().values(), |p| *p);
+    vertex.mesh_attributes(&set.vertex_attributes, losses);
+    let mut face = Rows::new("face", set.face_count());
+    face.corners(set.faces());
+    if let Some(uvs) = set.corner_attributes.get::<DVec2>(UV) {
+        face.corner_uvs(set.faces(), uvs.values());
+        losses.add_columns(&set.corner_attributes, &[UV]);
+    } else {
+        losses.add_columns(&set.corner_attributes, &[]);
+    }
+    face.mesh_attributes(&set.face_attributes, losses);
+    let mut elements = vec![vertex];
+    // A cloud of points has no element for faces.
+    if set.face_count() > 0 {
+        elements.push(face);
+    }
+    for extra in &document.elements {
+        let taken = elements.iter().any(|rows| rows.name == extra.name);
+        let name_fits = !extra.name.is_empty() && !extra.name.contains(char::is_whitespace);
+        if taken || !name_fits || extra.name == "face" {
+            losses.add(
+                format!("element `{}`: the name cannot be used", extra.name),
+                extra.rows.len(),
+            );
+            continue;
+        }
+        let mut rows = Rows::new(&extra.name, extra.rows.len());
+        rows.attributes(&extra.rows, &[], losses);
+        elements.push(rows);
+    }
+    losses.add_without_elements(document);
+
+    let mut chunks = vec![header(document, encoding, &elements)];
+    let total: usize = elements.iter().map(|rows| rows.count).sum();
+    let mut done = 0;
+    for rows in &elements {
+        let fraction = |count: usize| count as f64 / total.max(1) as f64;
+        let progress = progress.part(fraction(done), fraction(done + rows.count));
+        done += rows.count;
+        chunks.extend(rows.write(encoding, progress)?);
+    }
+    Ok(chunks)
+}
+
+fn header(document: &Document, encoding: Encoding, elements: &[Rows<'_>]) -> Vec<u8> {
+    let mut head = Printer::new();
+    head.text("ply\nformat ");
+    head.text(match encoding {
+        Encoding::Text => "ascii",
+        Encoding::LittleEndian => "binary_little_endian",
+        Encoding::BigEndian => "binary_big_endian",
+    });
+    head.text(" 1.0\n");
+    let texts = [("comment", &document.comments), ("obj_info", &document.notes)];
+    for (keyword, texts) in texts {
+        for line in texts.iter().flat_map(|text| text.split(['\n', '\r'])) {
+            head.text(keyword);
+            head.byte(b' ');
+            head.text(line);
+            head.byte(b'\n');
+        }
+    }
+    for rows in elements {
+        head.text(&format!("element {} {}\n", rows.name, rows.count));
+        for property in &rows.properties {
+            head.text("property ");
+            if let Some(kind) = property.list() {
+                head.text(&format!("list {kind} "));
+            }
+            head.text(&format!("{} {}\n", property.scalar, property.name));
+        }
+    }
+    head.text("end_header\n");
+    head.bytes
+}
+
+/// The rows of an element.
+struct Rows<'a> {
+    name: &'a str,
+    count: usize,
+    properties: Vec<Property<'a>>,
+}
+
+/// A number of each row, or a list of them.
+struct Property<'a> {
+    name: String,
+    scalar: Scalar,
+    /// Whether text shows the numbers in double precision, whatever the type.
+    wide: bool,
+    value: Value<'a>,
+}
+
+type Lookup<'a, T> = Box<dyn Fn(usize) -> T + Send + Sync + 'a>;
+
+enum Value<'a> {
+    Number(Lookup<'a, f64>),
+    /// The vertices of faces.
+    Corners(Scalar, &'a FaceList),
+    List(Scalar, Lookup<'a, &'a [f64]>),
+    /// Texture coordinates of the corners of faces.
+    Uvs(Scalar, &'a FaceList, &'a [DVec2]),
+}
+
+impl Property<'_> {
+    /// The type of the length of a list.
+    fn list(&self) -> Option<Scalar> {
+        match self.value {
+            Value::Number(_) => None,
+            Value::Corners(kind, _) | Value::List(kind, _) | Value::Uvs(kind, ..) => Some(kind),
+        }
+    }
+}
+
+/// The type that holds the length of the longest list.
+fn length_type(longest: usize) -> Scalar {
+    if longest <= 255 { Scalar::U8 } else { Scalar::U32 }
+}
+
+/// The smallest type of fractions that holds all numbers bit for bit.
+fn float_type<'a>(len: usize, numbers: impl Fn(usize) -> f64 + Sync + Send + 'a) -> Scalar {
+    let blocks =
+        parallel::map_blocks(len, parallel::BLOCK, |mut range| range.all(|i| is_f32(numbers(i))));
+    if blocks.contains(&false) { Scalar::F64 } else { Scalar::F32 }
+}
+
+impl<'a> Rows<'a> {
+    fn new(name: &'a str, count: usize) -> Self {
+        Rows { name, count, properties: Vec::new() }
+    }
+
+    fn number(
+        &mut self,
+        name: impl Into<String>,
+        scalar: Scalar,
+        value: impl Fn(usize) -> f64 + Send + Sync + 'a,
+    ) {
+        let value = Value::Number(Box::new(value));
+        self.properties.push(Property { name: name.into(), scalar, wide: false, value });
+    }
+
+    /// Three numbers of geometry.
+    fn triple<T: Sync>(
+        &mut self,
+        names: [&str; 3],
+        values: &'a [T],
+        vector: impl Fn(&T) -> DVec3 + Copy + Send + Sync + 'a,
+    ) {
+        let scalar = float_type(3 * values.len(), |i| vector(&values[i / 3])[i % 3]);
+        for (k, name) in names.into_iter().enumerate() {
+            self.number(name, scalar, move |i| vector(&values[i])[k]);
+            self.widen();
+        }
+    }
+
+    fn widen(&mut self) {
+        if let Some(last) = self.properties.last_mut() {
+            last.wide = true;
+        }
+    }
+
+    fn corners(&mut self, faces: &'a FaceList) {
+        let longest = faces.iter().map(|(_, face)| face.len()).max().unwrap_or(0);
+        let value = Value::Corners(length_type(longest), faces);
+        let (name, scalar) = ("vertex_indices".to_owned(), Scalar::I32);
+        self.properties.push(Property { name, scalar, wide: false, value });
+    }
+
+    fn corner_uvs(&mut self, faces: &'a FaceList, uvs: &'a [DVec2]) {
+        let longest = faces.iter().map(|(_, face)| 2 * face.len()).max().unwrap_or(0);
+        let scalar = float_type(2 * uvs.len(), |i| uvs[i / 2][i % 2]);
+        let value = Value::Uvs(length_type(longest), faces, uvs);
+        self.properties.push(Property { name: "texcoord".to_owned(), scalar, wide: true, value });
+    }
+
+    /// The attributes of vertices or faces.
+    fn mesh_attributes<I: Id>(&mut self, table: &'a AttributeTable<I>, losses: &mut Losses) {
+        let mut known = Vec::new();
+        if let Some(normals) = table.get::<Normal>(NORMAL).map(AttributeColumn::values) {
+            self.triple(["nx", "ny", "nz"], normals, |normal| normal.0);
+            known.push(NORMAL);
+        }
+        if let Some(colors) = table.get::<Color>(COLOR).map(AttributeColumn::values) {
+            self.colors(colors);
+            known.push(COLOR);
+        }
+        let uvs = table.get::<DVec2>(UV).map(AttributeColumn::values);
+        if let Some(uvs) = uvs.filter(|_| I::KIND == VertexId::KIND) {
+            let scalar = float_type(2 * uvs.len(), |i| uvs[i / 2][i % 2]);
+            for (k, name) in ["s", "t"].into_iter().enumerate() {
+                self.number(name, scalar, move |i| uvs[i][k]);
+                self.widen();
+            }
+            known.push(UV);
+        }
+        self.attributes(table, &known, losses);
+    }
+
+    fn colors(&mut self, colors: &'a [Color]) {
+        let exact = |color: &Color| Color::from_rgba8(color.to_rgba8()) == *color;
+        let bytes = colors.iter().all(exact);
+        let opaque = colors.iter().all(|color| color.0[3] == 1.0);
+        let names = ["red", "green", "blue", "alpha"];
+        for (k, name) in names.into_iter().take(if opaque { 3 } else { 4 }).enumerate() {
+            if bytes {
+                self.number(name, Scalar::U8, move |i| f64::from(colors[i].to_rgba8()[k]));
+            } else {
+                self.number(name, Scalar::F32, move |i| f64::from(colors[i].0[k]));
+            }
+        }
+    }
+
+    /// The attributes of a table by their names and types, but not those in `known`.
+    fn attributes<I: Id>(
+        &mut self,
+        table: &'a AttributeTable<I>,
+        known: &[&str],
+        losses: &mut Losses,
+    ) {
+        for attribute in table.names().filter(|name| !known.contains(name)) {
+            let plain = attribute.strip_prefix(PREFIX).unwrap_or(attribute);
+            let name: String = plain
+                .chars()
+                .map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c })
+                .collect();
+            let taken = |name: &str| self.properties.iter().any(|property| property.name == name);
+            if name.is_empty()
+                || ["", "_x", "_y", "_z"].iter().any(|end| taken(&format!("{name}{end}")))
+            {
+                losses.add(
+                    format!("{} attribute `{attribute}`: the name is taken", I::KIND),
+                    table.len(),
+                );
+            } else if !self.attribute(table, attribute, &name) {
+                let label = table.get::<Label>(attribute).is_some();
+                let what = if label { "names" } else { "values of its type" };
+                let what = format!("{} attribute `{attribute}`: PLY has no {what}", I::KIND);
+                losses.add(what, table.len());
+            } else if name != plain {
+                losses.add(format!("{} attribute `{attribute}` is called `{name}`", I::KIND), 1);
+            }
+        }
+    }
+
+    /// Adds an attribute under a name; false if PLY has no such type.
+    fn attribute<I: Id>(
+        &mut self,
+        table: &'a AttributeTable<I>,
+        attribute: &str,
+        name: &str,
+    ) -> bool {
+        macro_rules! numbers {
+            ($($type:ident $scalar:ident),*) => {
+                $(if let Some(values) = column::<I, $type>(table, attribute) {
+                    self.number(name, Scalar::$scalar, move |i| f64::from(values[i]));
+                    return true;
+                })*
+            };
+        }
+        numbers!(f64 F64, f32 F32, i8 I8, u8 U8, i16 I16, u16 U16, i32 I32, u32 U32, bool U8);
+        if let Some(values) = column::<I, i64>(table, attribute) {
+            let exact = values.iter().all(|&x| x as f64 as i64 == x);
+            let small = values.iter().all(|&x| i32::try_from(x).is_ok());
+            let scalar = if small { Scalar::I32 } else { Scalar::F64 };
+            self.number(name, scalar, move |i| values[i] as f64);
+            return exact || self.drop_last();
+        }
+        if let Some(values) = column::<I, u64>(table, attribute) {
+            let exact = values.iter().all(|&x| x as f64 as u64 == x);
+            let small = values.iter().all(|&x| u32::try_from(x).is_ok());
+            let scalar = if small { Scalar::U32 } else { Scalar::F64 };
+            self.number(name, scalar, move |i| values[i] as f64);
+            return exact || self.drop_last();
+        }
+        if let Some(values) = column::<I, DVec2>(table, attribute) {
+            for (k, axis) in ["x", "y"].into_iter().enumerate() {
+                self.number(format!("{name}_{axis}"), Scalar::F64, move |i| values[i][k]);
+            }
+            return true;
+        }
+        let vectors = column::<I, DVec3>(table, attribute)
+            .map(|values| Box::new(move |i: usize| values[i]) as Lookup<'a, DVec3>);
+        let normals = column::<I, Normal>(table, attribute)
+            .map(|values| Box::new(move |i: usize| values[i].0) as Lookup<'a, DVec3>);
+        if let Some(vectors) = vectors.or(normals) {
+            let vectors = std::sync::Arc::new(vectors);
+            for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+                let vectors = vectors.clone();
+                self.number(format!("{name}_{axis}"), Scalar::F64, move |i| vectors(i)[k]);
+            }
+            return true;
+        }
+        if let Some(lists) = column::<I, NumberList>(table, attribute) {
+            let longest = lists.iter().map(|list| list.0.len()).max().unwrap_or(0);
+            let scalar = list_type(lists);
+            let value = Value::List(length_type(longest), Box::new(move |i| &lists[i].0));
+            self.properties.push(Property { name: name.to_owned(), scalar, wide: false, value });
+            return true;
+        }
+        false
+    }
+
+    fn drop_last(&mut self) -> bool {
+        self.properties.pop();
+        false
+    }
+
+    fn write(&self, encoding: Encoding, progress: Progress<'_>) -> Result<Vec<Vec<u8>>, Error> {
+        if encoding == Encoding::Text {
+            let row = |printer: &mut Printer, i: usize| {
+                for (k, property) in self.properties.iter().enumerate() {
+                    printer.text(if k == 0 { "" } else { " " });
+                    property.print(printer, i);
+                }
+                printer.byte(b'\n');
+            };
+            return print_all(self.count, row, progress);
+        }
+        if self.properties.is_empty() {
+            return Ok(Vec::new());
+        }
+        let chunks = parallel::map_blocks(self.count, BLOCK, |range| {
+            let mut writer = ByteWriter::new(encoding);
+            let end = range.end;
+            for i in range {
+                for property in &self.properties {
+                    property.put(&mut writer, i);
+                }
+            }
+            progress.report(end as f64 / self.count as f64)?;
+            Ok(writer.bytes)
+        });
+        chunks.into_iter().collect()
+    }
+}
+
+fn column<'a, I: Id, T: AttributeValue>(
+    table: &'a AttributeTable<I>,
+    name: &str,
+) -> Option<&'a [T]> {
+    table.get::<T>(name).map(AttributeColumn::values)
+}
+
+/// The smallest type that holds all numbers of lists bit for bit.
+fn list_type(lists: &[NumberList]) -> Scalar {
+    let all = |fits: &dyn Fn(f64) -> bool| lists.iter().flat_map(|list| &list.0).all(|&x| fits(x));
+    let whole = |x: f64, low: f64, high: f64| {
+        x.fract() == 0.0 && low <= x && x <= high && x.to_bits() != (-0.0_f64).to_bits()
+    };
+    let types = [
+        (Scalar::U8, 0.0, f64::from(u8::MAX)),
+        (Scalar::I32, f64::from(i32::MIN), f64::from(i32::MAX)),
+        (Scalar::U32, 0.0, f64::from(u32::MAX)),
+    ];
+    let found = types.into_iter().find(|&(_, low, high)| all(&|x| whole(x, low, high)));
+    match found {
+        Some((scalar, ..)) => scalar,
+        None if all(&is_f32) => Scalar::F32,
+        None => Scalar::F64,
+    }
+}
+
+impl Property<'_> {
+    fn print_number(&self, printer: &mut Printer, x: f64) {
+        match self.scalar {
+            Scalar::F32 if !self.wide => printer.f32(x as f32),
+            Scalar::F32 | Scalar::F64 => printer.f64(x),
+            _ => printer.integer(x as i64),
+        }
+    }
+
+    fn print(&self, printer: &mut Printer, i: usize) {
+        match &self.value {
+            Value::Number(value) => self.print_number(printer, value(i)),
+            Value::Corners(_, faces) => {
+                let face = faces.face(FaceId::new(i));
+                printer.integer(face.len() as i64);
+                for v in face {
+                    printer.byte(b' ');
+                    printer.integer(v.index() as i64);
+                }
+            }
+            Value::List(_, list) => {
+                let list = list(i);
+                printer.integer(list.len() as i64);
+                for &x in list {
+                    printer.byte(b' ');
+                    self.print_number(printer, x);
+                }
+            }
+            Value::Uvs(_, faces, uvs) => {
+                let corners = faces.face_corners(FaceId::new(i));
+                printer.integer(2 * corners.len() as i64);
+                for x in corners.flat_map(|c| uvs[c.index()].to_array()) {
+                    printer.byte(b' ');
+                    self.print_number(printer, x);
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn put(&self, writer: &mut ByteWriter, i: usize) {
+        match &self.value {
+            Value::Number(value) => put(writer, self.scalar, value(i)),
+            Value::Corners(kind, faces) => {
+                let face = faces.face(FaceId::new(i));
+                put(writer, *kind, face.len() as f64);
+                for v in face {
+                    writer.u32(v.index() as u32);
+                }
+            }
+            Value::List(kind, list) => {
+                let list = list(i);
+                put(writer, *kind, list.len() as f64);
+                for &x in list {
+                    put(writer, self.scalar, x);
+                }
+            }
+            Value::Uvs(kind, faces, uvs) => {
+                let corners = faces.face_corners(FaceId::new(i));
+                put(writer, *kind, 2.0 * corners.len() as f64);
+                for x in corners.flat_map(|c| uvs[c.index()].to_array()) {
+                    put(writer, self.scalar, x);
+                }
+            }
+        }
+    }
+}
+
+#[inline]
+fn put(writer: &mut ByteWriter, scalar: Scalar, x: f64) {
+    match scalar {
+        Scalar::I8 => writer.i8(x as i8),
+        Scalar::U8 => writer.u8(x as u8),
+        Scalar::I16 => writer.i16(x as i16),
+        Scalar::U16 => writer.u16(x as u16),
+        Scalar::I32 => writer.i32(x as i32),
+        Scalar::U32 => writer.u32(x as u32),
+        Scalar::F32 => writer.f32(x as f32),
+        Scalar::F64 => writer.f64(x),
+    }
+}

@@ -1,0 +1,5 @@
+//! Fuzzes `dgp_tests::fuzz::stl`.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dgp_tests::fuzz::stl(bytes));
