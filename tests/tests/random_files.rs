@@ -4,7 +4,8 @@ use std::fs;
 
 use dgp_io::{Document, Encoding, Format, WriteOptions, write_bytes};
 use dgp_mesh::{
-    COLOR, Color, DVec2, DVec3, FaceList, GROUP, IndexedFaceSet, Label, NORMAL, Normal, Progress, UV,
+    COLOR, Color, DVec2, DVec3, FaceList, GROUP, IndexedFaceSet, Label, NORMAL, Normal, Progress,
+    UV,
 };
 use dgp_tests::{data, fuzz, random::Random};
 
@@ -20,9 +21,30 @@ const BODIES: [(Format, Body); 5] = [
 
 /// Words that steer a reader into its corners.
 const WORDS: [&str; 24] = [
-    "v ", "vt ", "vn ", "f ", "OFF", "COFF", "BINARY", "ply\n", "end_header\n", "element vertex ",
-    "property list uchar int ", "solid", "facet normal ", "vertex ", "endfacet", "4294967295",
-    "-1", "1e999", "nan", "//", "\\\n", "\r", "#", "\0",
+    "v ",
+    "vt ",
+    "vn ",
+    "f ",
+    "OFF",
+    "COFF",
+    "BINARY",
+    "ply\n",
+    "end_header\n",
+    "element vertex ",
+    "property list uchar int ",
+    "solid",
+    "facet normal ",
+    "vertex ",
+    "endfacet",
+    "4294967295",
+    "-1",
+    "1e999",
+    "nan",
+    "//",
+    "\\\n",
+    "\r",
+    "#",
+    "\0",
 ];
 
 #[test]
@@ -37,7 +59,9 @@ fn random_bytes_do_no_harm() {
                 _ => bytes.push(random.bits() as u8),
             }
         }
-        BODIES.iter().for_each(|(_, body)| body(&bytes));
+        for (_, body) in BODIES {
+            body(&bytes);
+        }
         fuzz::build_from_faces(&bytes);
     }
 }
@@ -67,7 +91,9 @@ fn damaged_files_do_no_harm() {
 fn fixtures_do_no_harm() {
     for path in data::files(&data::fixtures()) {
         let bytes = fs::read(&path).unwrap();
-        BODIES.iter().for_each(|(_, body)| body(&bytes));
+        for (_, body) in BODIES {
+            body(&bytes);
+        }
         fuzz::build_from_faces(&bytes);
     }
 }
@@ -100,7 +126,8 @@ fn colorful() -> Document {
     let mut set = IndexedFaceSet::new(positions, faces).unwrap();
     set.vertex_attributes.insert(NORMAL, vec![Normal(DVec3::Z); 5]);
     set.vertex_attributes.insert(COLOR, vec![Color::from_rgb8([255, 128, 0]); 5]);
-    set.corner_attributes.insert(UV, (0..7).map(|i| DVec2::splat(f64::from(i))).collect::<Vec<_>>());
+    set.corner_attributes
+        .insert(UV, (0..7).map(|i| DVec2::splat(f64::from(i))).collect::<Vec<_>>());
     set.face_attributes.insert(GROUP, vec![Label::new("a"), Label::new("b")]);
     set.face_attributes.insert(COLOR, vec![Color::from_rgb8([1, 2, 3]); 2]);
     Document { comments: vec!["two faces".to_owned()], ..set.into() }

@@ -163,14 +163,19 @@ fn chunks(
     }
     document.validate()?;
     let mut losses = Losses::default();
-    let chunks = match format {
+    let mut chunks = match format {
         Format::Obj => obj::write(document, &mut losses, progress),
         Format::Off => off::write(document, encoding, &mut losses, progress),
         Format::Ply => ply::write(document, encoding, &mut losses, progress),
         Format::Stl => stl::write(document, encoding, &mut losses, progress),
         Format::Xyz | Format::Pwn => xyz::write(document, format, &mut losses, progress),
     }?;
-    let bytes = chunks.iter().map(Vec::len).sum();
+    let mut bytes = chunks.iter().map(Vec::len).sum();
+    if bytes == 0 {
+        // A file of 0 bytes is a failed copy; nothing in good order is an empty line.
+        chunks = vec![b"\n".to_vec()];
+        bytes = 1;
+    }
     Ok((chunks, WriteReport { format, encoding, bytes, losses: losses.0 }))
 }
 

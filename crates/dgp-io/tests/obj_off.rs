@@ -97,6 +97,18 @@ fn clouds_have_normals_and_colors_without_faces() {
 }
 
 #[test]
+fn normals_that_are_not_there_do_not_cost_the_faces() {
+    let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n";
+    let (document, report) = read_bytes_with(text, Format::Obj, Progress::NONE).unwrap();
+    assert_eq!(document.set.face_count(), 1);
+    assert!(document.set.vertex_attributes.is_empty());
+    assert_eq!(
+        report.warnings[0].to_string(),
+        "line 1: corner names a normal that is not there (3 times)"
+    );
+}
+
+#[test]
 fn unknown_statements_are_counted() {
     let text = b"v 0 0 0\nvp 1 2\ncurv 0 1 \\\n 2 3\nvp 3 4\n";
     let (_, report) = read_bytes_with(text, Format::Obj, Progress::NONE).unwrap();

@@ -26,14 +26,14 @@ pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
 }
 
 fn join(text: Text<'_>, ranges: &[Range<usize>], mut blocks: Vec<Block>) -> Result<Contents, Stop> {
-    let corners = resolve(text, ranges, &blocks, 0)?;
-    let corner_uvs = resolve(text, ranges, &blocks, 1)?;
-    let corner_normals = resolve(text, ranges, &blocks, 2)?;
+    let mut oddities = Oddities::default();
+    let corners = resolve(text, ranges, &blocks, 0, &mut oddities)?;
+    let corner_uvs = resolve(text, ranges, &blocks, 1, &mut oddities)?;
+    let corner_normals = resolve(text, ranges, &blocks, 2, &mut oddities)?;
     let corners: Vec<VertexId> =
         corners.into_iter().map(|number| VertexId::new(number as usize - 1)).collect();
 
     let mut document = Document::default();
-    let mut oddities = Oddities::default();
     (document.polylines, document.points) = lines_and_points(ranges, &blocks)?;
     let colors = padded(&mut blocks, |block| &mut block.colors, [1.0; 4]);
     let weights = padded(&mut blocks, |block| &mut block.weights, 1.0);
@@ -117,6 +117,7 @@ fn resolve(
     ranges: &[Range<usize>],
     blocks: &[Block],
     field: usize,
+    oddities: &mut Oddities,
 ) -> Result<Vec<u32>, Stop> {
     let references = |block: &'_ Block| -> usize {
         [&block.corners, &block.corner_uvs, &block.corner_normals][field].numbers.len()
@@ -131,9 +132,18 @@ fn resolve(
     for ((block, &start), range) in blocks.iter().zip(&starts).zip(ranges) {
         let first = all.len();
         let part = [&block.corners, &block.corner_uvs, &block.corner_normals][field];
-        let bad = append(part, start, total, &mut all);
+        let (count, bad) = append(part, start, total, &mut all);
         if let Some(bad) = bad {
-            return Err(named_by(text, range, block, bad, field, total).into());
+            if field == 0 {
+                return Err(named_by(text, range, block, bad, total).into());
+            }
+            // The geometry is whole without it.
+            let what = ["", "texture coordinate", "normal"][field];
+            oddities.add_many(
+                format!("corner names a {what} that is not there").into(),
+                count,
+                range.start,
+            );
         }
         // The block says nothing about corners that name none.
         all.resize(first + block.corners.numbers.len(), 0);
@@ -141,20 +151,36 @@ fn resolve(
     Ok(all)
 }
 
-/// Adds numbers over the whole file; the position of the first that is out of range, if one is.
-fn append(part: &References, start: usize, total: usize, all: &mut Vec<u32>) -> Option<usize> {
+/// Adds numbers over the whole file, 0 for those out of range: how many these are, and the position
+/// of the first of them.
+fn append(
+    part: &References,
+    start: usize,
+    total: usize,
+    all: &mut Vec<u32>,
+) -> (usize, Option<usize>) {
     let first = all.len();
-    let mut bad = part.numbers.iter().position(|&number| number as usize > total);
     all.extend_from_slice(&part.numbers);
+    let (mut count, mut bad) = (0, None);
+    let mut note = |slot: usize| {
+        count += 1;
+        bad = Some(bad.map_or(slot, |bad: usize| bad.min(slot)));
+    };
+    for (slot, number) in all[first..].iter_mut().enumerate() {
+        if *number as usize > total {
+            note(slot);
+            *number = 0;
+        }
+    }
     for &(slot, local) in &part.relative {
         let number = local.saturating_add(start as i64);
         if number < 1 || number > total as i64 {
-            bad = Some(bad.map_or(slot as usize, |bad| bad.min(slot as usize)));
+            note(slot as usize);
         } else {
             all[first + slot as usize] = number as u32;
         }
     }
-    bad
+    (count, bad)
 }
 
 /// The fault of corner `bad` of a block, found in the text once more.
@@ -163,7 +189,6 @@ fn named_by(
     range: &Range<usize>,
     block: &Block,
     bad: usize,
-    field: usize,
     count: usize,
 ) -> Fault {
     let face = block.face_ends.partition_point(|&end| end as usize <= bad);
@@ -174,9 +199,9 @@ fn named_by(
     let mut index = 0;
     for _ in first..=bad {
         cursor.skip_blanks();
-        index = corner(&mut cursor).map_or(0, |numbers| numbers[field]);
+        index = corner(&mut cursor).map_or(0, |numbers| numbers[0]);
     }
-    out_of_range(at, field, index, count).within("face")
+    out_of_range(at, 0, index, count).within("face")
 }
 
 fn lines_and_points(
@@ -189,8 +214,10 @@ fn lines_and_points(
         let vertices = |part: &References, element| {
             let mut numbers = Vec::new();
             match append(part, start, total, &mut numbers) {
-                None => Ok(numbers.into_iter().map(|n| VertexId::new(n as usize - 1)).collect()),
-                Some(bad) => {
+                (_, None) => {
+                    Ok(numbers.into_iter().map(|n| VertexId::new(n as usize - 1)).collect())
+                }
+                (_, Some(bad)) => {
                     let index = i64::from(part.numbers[bad]);
                     Err(out_of_range(range.start, 0, index, total).within(element))
                 }
@@ -249,6 +276,9 @@ fn place<T: AttributeValue>(
         } else if !values.is_empty() {
             oddities.add(format!("{} `{name}` values that no face names skipped", values.len()), 0);
         }
+        return;
+    }
+    if values.is_empty() {
         return;
     }
     let missing = corners.iter().filter(|&&number| number == 0).count();

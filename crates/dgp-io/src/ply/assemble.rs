@@ -261,6 +261,9 @@ impl<'a> Rows<'a> {
     fn uvs(&mut self, attributes: &mut AttributeTable<VertexId>) {
         let Some([u, v]) = UVS.into_iter().find_map(|names| self.find_all(names)) else { return };
         let (u, v) = (self.numbers(u), self.numbers(v));
+        if self.element.count == 0 {
+            return;
+        }
         let uv = |i: usize| DVec2::new(u.get(i), v.get(i));
         attributes.insert(UV, (0..u.len()).map(uv).collect::<Vec<DVec2>>());
     }
@@ -300,6 +303,9 @@ impl<'a> Rows<'a> {
     /// All properties not used yet: normals and colors as such, others by their names.
     fn attributes<I: Id>(&mut self, attributes: &mut AttributeTable<I>) {
         let mesh_element = I::KIND != RowId::KIND;
+        if mesh_element && self.element.count == 0 {
+            return;
+        }
         if mesh_element && let Some(p) = NORMALS.into_iter().find_map(|names| self.find_all(names))
         {
             let normals: Vec<Normal> = self.triples(p).into_iter().map(Normal).collect();

@@ -1,8 +1,8 @@
 //! Writing STL.
 
 use dgp_mesh::{
-    AttributeColumn, DVec3, FaceId, FaceList, IndexedFaceSet, Label, OBJECT, Progress, VertexId,
-    parallel,
+    AttributeColumn, DVec3, FaceId, FaceList, IndexedFaceSet, Label, OBJECT, Progress,
+    TriangulationMethod, VertexId, parallel, triangulate_polygon,
 };
 
 use super::{FACET, HEADER};
