@@ -7,6 +7,7 @@ use std::{
 };
 
 use crate::{
+    bench, golden,
     shell::{self, Outcome, cargo},
     tidy,
 };
@@ -28,6 +29,8 @@ pub(crate) fn run() -> Outcome<()> {
         shell::run(command.env("RUSTDOCFLAGS", "-D warnings"))
     })?;
     steps.step("demo", demo)?;
+    steps.step("golden comparisons", || golden::run(&[]))?;
+    steps.step("benchmarks run", || bench::run(&["--quick".into()]))?;
     steps.print();
     Ok(())
 }

@@ -38,6 +38,13 @@ fn archive() -> Option<PathBuf> {
     Some(PathBuf::from("/usr/share/doc/libcgal-dev/data.tar.gz")).filter(|path| path.exists())
 }
 
+/// The folder of shared data, where there is one: `DGP_SHARED_DATA`, else ../shared/data.
+pub(crate) fn shared() -> Option<PathBuf> {
+    let named = std::env::var_os("DGP_SHARED_DATA").map(PathBuf::from);
+    let folder = named.unwrap_or_else(|| shell::root().join("../shared/data"));
+    folder.is_dir().then_some(folder)
+}
+
 /// All files under `folder` with one of these extensions, in order of their names.
 pub(crate) fn files(folder: &Path, extensions: &[&str]) -> Outcome<Vec<PathBuf>> {
     let mut found = Vec::new();

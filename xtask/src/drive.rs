@@ -9,10 +9,14 @@ use std::{
 };
 
 use dgp_io::{Document, Encoding, WriteOptions};
+use dgp_laplace::smooth::{UniformOptions, uniform};
 use dgp_mesh::{
-    DVec3, IndexedFaceSet, Mesh, Progress, VertexId,
-    measure::{NormalWeight, vertex_normals},
+    DVec3, IndexedFaceSet, Mesh, Progress, RepairOptions, VertexId, VertexSet,
+    graph::{Until, dijkstra},
+    measure::{NormalWeight, edge_lengths, vertex_normals},
+    repair,
 };
+use dgp_view::{Model, RenderOptions, Scene, render};
 use serde_json::{Map, Value, json};
 
 use crate::{raw, shell::Outcome};
@@ -74,6 +78,33 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
             let mesh = built(&raw::read(&call.input)?)?;
             time(report, call.repeat, || Ok(vertex_normals(&mesh, NormalWeight::Area)))
         }
+        "dijkstra" => {
+            let mesh = built(&raw::read(&call.input)?)?;
+            let start = [VertexId::new(0)];
+            time(report, call.repeat, || {
+                let lengths = edge_lengths(&mesh);
+                Ok(dijkstra(&mesh, &lengths, &start, Until::AllReached, Progress::NONE)?)
+            })
+        }
+        "repair" => {
+            let set = raw::read(&call.input)?;
+            let options = RepairOptions::default();
+            time(report, call.repeat, || Ok(repair(&set, &options, Progress::NONE)?))
+        }
+        "smooth" => {
+            let mesh = built(&raw::read(&call.input)?)?;
+            let options = UniformOptions { iterations: 10, ..UniformOptions::default() };
+            time_from(report, call.repeat, || mesh.clone(), |mut mesh| {
+                let smoothed = uniform(&mut mesh, &VertexSet::new(), &options, Progress::NONE)?;
+                Ok((mesh, smoothed))
+            })
+        }
+        "render" => {
+            let mesh = built(&raw::read(&call.input)?)?;
+            let scene = Scene::new(Model::new(&mesh));
+            let options = RenderOptions { width: 1200, height: 900, samples: 2, ..RenderOptions::default() };
+            time(report, call.repeat, || Ok(render(&scene, &options, Progress::NONE)?))
+        }
         "read" => time(report, call.repeat, || built(&dgp_io::read(&call.input)?.set)),
         "parse" => time(report, call.repeat, || Ok(dgp_io::read(&call.input)?)),
         "write-ascii" | "write-binary" => write(call, report),
@@ -104,11 +135,22 @@ fn time<T>(
     repeat: usize,
     mut run: impl FnMut() -> Outcome<T>,
 ) -> Outcome<()> {
+    time_from(report, repeat, || (), |()| run())
+}
+
+/// The same for what changes its input, which `start` makes anew outside the timed part.
+fn time_from<S, T>(
+    report: &mut Map<String, Value>,
+    repeat: usize,
+    start: impl Fn() -> S,
+    mut run: impl FnMut(S) -> Outcome<T>,
+) -> Outcome<()> {
     let (mut wall, mut processor) = (Vec::new(), Vec::new());
     for _ in 0..repeat {
-        let (start, cpu) = (Instant::now(), processor_ms());
-        let result = black_box(run()?);
-        wall.push(start.elapsed().as_secs_f64() * 1e3);
+        let state = start();
+        let (clock, cpu) = (Instant::now(), processor_ms());
+        let result = black_box(run(state)?);
+        wall.push(clock.elapsed().as_secs_f64() * 1e3);
         processor.push(processor_ms() - cpu);
         drop(result);
     }

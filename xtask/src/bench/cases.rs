@@ -18,6 +18,8 @@ pub(super) struct Case {
 pub(super) enum Data {
     /// A raw mesh.
     Raw,
+    /// A raw mesh with faces turned over.
+    Soup,
     /// A file of this name.
     File(&'static str),
     /// A raw mesh, and the name of a file to write.
@@ -56,6 +58,18 @@ pub(super) fn all() -> Vec<Case> {
         },
         case("rings", "sum of the neighbors' positions at every vertex", "rings"),
         case("normals", "a normal at every vertex", "normals"),
+        Case { cgal: None, ..case("smooth", "ten steps of uniform smoothing", "smooth") },
+        Case {
+            openmesh: None,
+            cgal: None,
+            ..case("render", "a picture of 1200 × 900 pixels, four samples each", "render")
+        },
+        Case { openmesh: None, ..case("dijkstra", "distances along edges from a vertex", "dijkstra") },
+        Case {
+            openmesh: None,
+            data: Data::Soup,
+            ..case("repair", "faces with one in a hundred turned over, made a mesh", "repair")
+        },
     ];
     for (read, write, file, binary) in [
         ("read-obj", "write-obj", "mesh.obj", false),

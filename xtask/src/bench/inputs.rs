@@ -6,7 +6,7 @@ use std::{
 };
 
 use dgp_io::{Document, Encoding, WriteOptions};
-use dgp_mesh::{Progress, shapes};
+use dgp_mesh::{FaceId, IndexedFaceSet, Progress, shapes};
 
 use super::Effort;
 use crate::{raw, shell::Outcome};
@@ -17,6 +17,8 @@ pub(super) struct Input {
     pub(super) triangles: usize,
     /// The raw mesh.
     pub(super) raw: PathBuf,
+    /// The same with some faces turned over.
+    pub(super) soup: PathBuf,
     /// The folder with the mesh in every format, if it was written.
     pub(super) files: Option<PathBuf>,
 }
@@ -33,6 +35,8 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
         fs::create_dir_all(&place)?;
         let path = place.join("mesh.raw");
         raw::write(&path, &set)?;
+        let soup = place.join("soup.raw");
+        raw::write(&soup, &turned(&set)?)?;
         let shuffled = (i + 1 == levels.len()).then(|| shapes::shuffled(&set, 2));
         let document = Document { set, ..Document::default() };
         for (file, encoding) in [
@@ -48,17 +52,27 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
                 eprintln!("{file}: {error}");
             }
         }
-        inputs.push(Input { name: name.clone(), triangles, raw: path, files: Some(place) });
+        inputs.push(Input { name: name.clone(), triangles, raw: path, soup, files: Some(place) });
         if let Some(set) = shuffled {
             let path = folder.join(format!("{name}-shuffled.raw"));
             raw::write(&path, &set)?;
+            let soup = folder.join(format!("{name}-shuffled-soup.raw"));
+            raw::write(&soup, &turned(&set)?)?;
             inputs.push(Input {
                 name: format!("{name}, shuffled"),
                 triangles,
-                raw: path,
-                files: None,
+                raw: path, soup, files: None,
             });
         }
     }
     Ok(inputs)
+}
+
+/// Every hundredth face turned over.
+fn turned(set: &IndexedFaceSet) -> Outcome<IndexedFaceSet> {
+    let mut faces = set.faces().clone();
+    for f in (0..faces.len()).step_by(100).map(FaceId::new) {
+        faces.face_mut(f).reverse();
+    }
+    Ok(IndexedFaceSet::new(set.positions().clone(), faces)?)
 }

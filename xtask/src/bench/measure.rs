@@ -41,6 +41,7 @@ pub(super) fn case(
     folder: &Path,
 ) -> Option<Row> {
     let (path, out) = match (case.data, &input.files) {
+        (Data::Soup, _) => (input.soup.clone(), None),
         (Data::Raw, _) => (input.raw.clone(), None),
         (Data::File(name), Some(files)) => (files.join(name), None),
         (Data::Output(name), Some(_)) => (input.raw.clone(), Some(folder.join(name))),
@@ -120,6 +121,11 @@ impl Series {
 }
 
 impl Row {
+    /// Whether there is a figure of ours.
+    pub(super) fn is_measured(&self) -> bool {
+        !self.ours.values.is_empty()
+    }
+
     fn ratios(&self, peer: &Series) -> Vec<f64> {
         peer.values.iter().zip(&self.ours.values).map(|(peer, ours)| peer / ours).collect()
     }
@@ -158,7 +164,11 @@ impl Row {
             if let (Some(value), Some(ratio)) =
                 (median(&series.values), median(&self.ratios(series)))
             {
-                let _ = write!(line, "  {name} {value:.2} ({ratio:.2}×)");
+                let processor = match (median(&series.processor), median(&self.ours.processor)) {
+                    (Some(peer), Some(ours)) => format!(", processor {:.2}×", peer / ours),
+                    _ => String::new(),
+                };
+                let _ = write!(line, "  {name} {value:.2} ({ratio:.2}×{processor})");
             }
         }
         println!("{line}");

@@ -40,8 +40,12 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             _ => return Err("usage: bench [--quick | --criterion] [CASE…]".into()),
         }
     }
-    let peers = Peers::build(Wanted::Optimized)?;
-    let folder = shell::target("bench")?;
+    let (wanted, folder) = match effort {
+        Effort::Quick => (Wanted::Any, "bench-quick"),
+        Effort::Full => (Wanted::Optimized, "bench"),
+    };
+    let peers = Peers::build(wanted)?;
+    let folder = shell::target(folder)?;
     let inputs = inputs::prepare(effort, &folder)?;
     let mut rows = Vec::new();
     for input in &inputs {
@@ -56,6 +60,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     let golden = fs::read_to_string(shell::target("golden")?.join("golden.json"));
     let golden: Value =
         golden.ok().and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+    let unmeasured = rows.iter().filter(|row| !row.is_measured()).count();
     let rows: Vec<Value> = rows.iter().map(measure::Row::to_json).collect();
     let results = json!({
         "machine": machine::describe(&peers.openmesh.name)?,
@@ -67,5 +72,8 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     fs::write(&json, serde_json::to_string_pretty(&results)?)?;
     fs::write(&html, page::html(&results))?;
     println!("{}\n{}", json.display(), html.display());
-    Ok(())
+    match unmeasured {
+        0 => Ok(()),
+        count => Err(format!("{count} cases have no figure of ours").into()),
+    }
 }

@@ -4,7 +4,7 @@
 //! the quantity, that is, by how much it magnifies relative changes of the coordinates' differences.
 //! The condition is worked out from the input alone, by formulas of this file.
 
-use dgp_mesh::{DVec3, IndexedFaceSet, NotManifold};
+use dgp_mesh::{DVec3, IndexedFaceSet, Mesh, NotManifold, VertexId, topology::components};
 use serde_json::Value;
 
 use super::facts::Facts;
@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 22] = [
+pub(crate) const QUANTITIES: [(&str, &str); 24] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -36,9 +36,11 @@ pub(crate) const QUANTITIES: [(&str, &str); 22] = [
     ("volume", "1e-12 · area · |x|"),
     ("distances", "1e-12 · largest"),
     ("repaired_points", "equal"),
-    ("repaired_faces", "equal sizes"),
+    ("repaired_edges", "equal"),
+    ("repaired_faces", "equal"),
     ("repaired_boundary", "equal sizes"),
-    ("orientation", "equal up to a flip of a component"),
+    ("repaired_components", "equal"),
+    ("repaired_orientation", "equal up to turning a component over"),
 ];
 
 /// How one quantity of one input compares.
@@ -86,6 +88,52 @@ pub(crate) fn compare(
         });
     }
     comparisons
+}
+
+/// Compares which way faces look after a repair: turning all of a component over is no difference.
+pub(crate) fn orientation(set: &IndexedFaceSet, ours: &Mesh, theirs: &IndexedFaceSet) -> Comparison {
+    const NAME: &str = "repaired_orientation";
+    let own = ours.to_indexed();
+    if own.face_count() != set.face_count() || theirs.face_count() != set.face_count() {
+        return differs(NAME, "the number of faces changed".into());
+    }
+    let components = components(ours);
+    let mut votes = vec![[0_usize; 2]; components.count];
+    for (f, face) in set.faces().iter() {
+        let wanted = points(set, face);
+        let turned = |set: &IndexedFaceSet| is_turned(&wanted, &points(set, set.faces().face(f)));
+        let (Some(a), Some(b)) = (turned(&own), turned(theirs)) else {
+            return differs(NAME, format!("{f} has other corners"));
+        };
+        votes[components.face[f]][usize::from(a == b)] += 1;
+    }
+    match votes.iter().map(|vote| vote[0].min(vote[1])).sum::<usize>() {
+        0 => Comparison {
+            quantity: NAME.into(),
+            compared: set.face_count(),
+            left_out: 0,
+            worst: 0.0,
+            verdict: Verdict::Same,
+        },
+        count => differs(NAME, format!("{count} faces look the other way")),
+    }
+}
+
+fn points(set: &IndexedFaceSet, face: &[VertexId]) -> Vec<[u64; 3]> {
+    face.iter().map(|&v| set.position(v).to_array().map(f64::to_bits)).collect()
+}
+
+/// Whether `face` is `wanted` walked backward; `None` if it is another.
+fn is_turned(wanted: &[[u64; 3]], face: &[[u64; 3]]) -> Option<bool> {
+    let rotated = |face: &[[u64; 3]]| {
+        (0..face.len()).any(|k| face[k..].iter().chain(&face[..k]).eq(wanted.iter()))
+    };
+    let backward: Vec<[u64; 3]> = face.iter().rev().copied().collect();
+    match (rotated(face), rotated(&backward)) {
+        (true, _) => Some(false),
+        (false, true) => Some(true),
+        (false, false) => None,
+    }
 }
 
 /// Why one of us takes faces the other refuses.
@@ -292,6 +340,20 @@ mod tests {
             theirs.values.insert(name.clone(), changed.into());
             assert_eq!(differing(&set, &ours, &theirs), [name.as_str()]);
         }
+    }
+
+    #[test]
+    fn turning_a_whole_component_over_is_no_difference_and_turning_part_is() {
+        let (set, _) = sphere();
+        let mesh = Mesh::new(&set).unwrap();
+        let turned = |faces: usize| {
+            let mut lists = crate::raw::faces(&set);
+            lists.iter_mut().take(faces).for_each(|face| face.reverse());
+            IndexedFaceSet::new(set.positions().clone(), dgp_mesh::FaceList::from_indices(&lists))
+        };
+        let verdict = |faces| orientation(&set, &mesh, &turned(faces).unwrap()).verdict;
+        assert_eq!((verdict(0), verdict(80)), (Verdict::Same, Verdict::Same));
+        assert!(matches!(verdict(3), Verdict::Differs(_)));
     }
 
     #[test]

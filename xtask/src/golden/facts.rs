@@ -4,9 +4,11 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use dgp_mesh::{
-    DVec3, Error, HalfedgeId, IndexedFaceSet, Mesh, NotManifold, VertexMap,
+    CrowdedEdges, DVec3, Error, Facing, HalfedgeId, IndexedFaceSet, IsolatedVertices, Mesh,
+    NotManifold, Progress, RepairOptions, VertexId, VertexMap,
+    graph::{Until, dijkstra},
     measure::{self, NormalWeight, vertex_normals},
-    topology,
+    repair, topology,
 };
 use serde_json::{Map, Value, json};
 
@@ -68,6 +70,57 @@ pub(crate) fn ours(set: &IndexedFaceSet) -> Facts {
         }
     }
     facts
+}
+
+/// Our distances along edges from the first vertex; -1 where no path leads.
+pub(crate) fn distances(set: &IndexedFaceSet, facts: &mut Facts) -> Outcome<()> {
+    let mesh = Mesh::new(set)?;
+    let (lengths, start) = (measure::edge_lengths(&mesh), VertexId::new(0));
+    let found = dijkstra(&mesh, &lengths, &[start], Until::AllReached, Progress::NONE)?;
+    let distances = found.distance.map(|&d| if d.is_finite() { d } else { -1.0 });
+    facts.columns.insert("distances".into(), distances.into_values());
+    Ok(())
+}
+
+/// Our repair of faces that make no mesh, with the choices that CGAL makes: as many faces as before, all
+/// cut apart at edges that more than two share.
+pub(crate) fn repaired(set: &IndexedFaceSet) -> Outcome<(Facts, Mesh)> {
+    let options = RepairOptions {
+        orientation: Facing::Consistent,
+        crowded_edges: CrowdedEdges::Cut,
+        isolated_vertices: IsolatedVertices::Keep,
+        ..RepairOptions::default()
+    };
+    let (mesh, _) = repair(set, &options, Progress::NONE)?;
+    let mut facts = Facts::default();
+    facts.value("repaired_points", mesh.vertex_count());
+    facts.value("repaired_edges", mesh.edge_count());
+    facts.value("repaired_faces", mesh.face_count());
+    let mut loops: Vec<usize> = topology::boundary_loops(&mesh).iter().map(Vec::len).collect();
+    loops.sort_unstable();
+    facts.value("repaired_boundary", loops);
+    facts.value("repaired_components", topology::components(&mesh).count);
+    Ok((facts, mesh))
+}
+
+/// CGAL's repair, by the same names, and the faces it made.
+pub(crate) fn their_repair(driver: &Driver, input: &Path) -> Outcome<(Facts, IndexedFaceSet)> {
+    let prefix = input.with_extension("repaired");
+    let answer = driver.call("repair", input, &["--out", &prefix.to_string_lossy()])?;
+    let mut facts = Facts::default();
+    for (name, theirs) in [
+        ("repaired_points", "vertices"),
+        ("repaired_edges", "edges"),
+        ("repaired_faces", "faces"),
+        ("repaired_boundary", "boundary_loops"),
+        ("repaired_components", "components"),
+    ] {
+        facts.value(name, answer[theirs].clone());
+    }
+    let path = prefix.with_extension("repaired.raw");
+    let set = raw::read(&path)?;
+    fs::remove_file(path)?;
+    Ok((facts, set))
 }
 
 /// What a peer says of the mesh in `input`; columns go through files beside it.

@@ -1,9 +1,16 @@
 //! What the comparisons run on: shapes made in code, and real meshes where they are installed.
 
+use std::fs;
+
 use dgp_mesh::{
     DVec3, Error, FaceList, IndexedFaceSet, Mesh,
     shapes::{self, Random},
 };
+
+use crate::{data, shell::Outcome};
+
+/// The largest file to read, in bytes.
+const LARGEST: u64 = 6 << 20;
 
 /// A mesh with a name.
 pub(crate) struct Input {
@@ -92,5 +99,30 @@ pub(crate) fn large() -> Result<Vec<Input>, Error> {
         meshes.into_iter().map(|(name, mesh)| Input::new(name, mesh.to_indexed())).collect();
     let shuffled = shapes::shuffled(&inputs[0].set, 7);
     inputs.push(Input::new("shuffled-sphere", shuffled));
+    Ok(inputs)
+}
+
+/// Real meshes where they are installed: those of Debian's package and the shared ones. Files that are
+/// no mesh, and those too large to compare in a minute, are left out.
+pub(crate) fn real() -> Outcome<Vec<Input>> {
+    let mut folders = Vec::new();
+    match data::unpack() {
+        Ok(folder) => folders.push(folder),
+        Err(error) => println!("without real meshes: {error}"),
+    }
+    folders.extend(data::shared());
+    let mut inputs = Vec::new();
+    for folder in folders {
+        for path in data::files(&folder, &["off", "obj", "ply", "stl"])? {
+            let size = fs::metadata(&path)?.len();
+            let Ok(document) = dgp_io::read(&path) else { continue };
+            if document.set.face_count() == 0 || size > LARGEST {
+                continue;
+            }
+            let name = path.strip_prefix(&folder)?.to_string_lossy().replace(['/', '.'], "-");
+            inputs.push(Input::new(&name, document.set));
+        }
+    }
+    println!("{} real meshes", inputs.len());
     Ok(inputs)
 }

@@ -11,6 +11,8 @@ mod table;
 
 use std::{fs, path::Path};
 
+use dgp_mesh::{IndexedFaceSet, VertexId, topology::topology_report};
+
 use crate::{
     peers::{Peers, Wanted},
     raw,
@@ -41,6 +43,9 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     for input in inputs::large()? {
         answers(&peers, &folder, &input, &mut table)?;
     }
+    for input in inputs::real()? {
+        answers(&peers, &folder, &input, &mut table)?;
+    }
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()
@@ -55,10 +60,21 @@ fn answers(
 ) -> Outcome<Vec<(&'static str, Facts)>> {
     let path = folder.join(format!("{}.raw", input.name));
     raw::write(&path, &input.set)?;
-    let ours = facts::ours(&input.set);
+    let mut ours = facts::ours(&input.set);
+    let first_is_used = input.set.faces().corners().contains(&VertexId::new(0));
+    if ours.refusal.is_none() && first_is_used {
+        facts::distances(&input.set, &mut ours)?;
+    }
     let mut all = Vec::new();
     for (peer, driver) in [("OpenMesh", &peers.openmesh), ("CGAL", &peers.cgal)] {
-        match facts::theirs(driver, &path, &input.set) {
+        let mut answer = facts::theirs(driver, &path, &input.set);
+        if let (Ok(theirs), "CGAL") = (&mut answer, peer)
+            && theirs.values["accepted"] == true
+            && first_is_used
+        {
+            theirs.add(driver, "dijkstra", &path, &path.with_extension("dijkstra"))?;
+        }
+        match answer {
             Ok(theirs) => {
                 table.add(&input.name, peer, compare(&input.set, &ours, &theirs, peer));
                 all.push((peer, theirs));
@@ -66,6 +82,31 @@ fn answers(
             Err(error) => table.silent(&input.name, peer, &ours, &error.to_string()),
         }
     }
+    if ours.refusal.is_some() {
+        compare_repairs(peers, &path, input, table)?;
+    }
     fs::remove_file(path)?;
     Ok(all)
+}
+
+/// Compares how CGAL and we repair faces that make no mesh. CGAL leaves equal and degenerate faces
+/// alone, and where a one-sided surface is cut is anybody's choice: those inputs are left out.
+fn compare_repairs(peers: &Peers, path: &Path, input: &Input, table: &mut Table) -> Outcome<()> {
+    let report = topology_report(&input.set);
+    if report.degenerate_faces > 0 || !report.orientable || has_equal_faces(&input.set) {
+        return Ok(());
+    }
+    let (ours, mesh) = facts::repaired(&input.set)?;
+    let (theirs, faces) = facts::their_repair(&peers.cgal, path)?;
+    let mut comparisons = compare(&input.set, &ours, &theirs, "CGAL");
+    comparisons.push(compare::orientation(&input.set, &mesh, &faces));
+    table.add(&input.name, "CGAL", comparisons);
+    Ok(())
+}
+
+fn has_equal_faces(set: &IndexedFaceSet) -> bool {
+    let mut faces: Vec<Vec<usize>> = raw::faces(set);
+    faces.iter_mut().for_each(|face| face.sort_unstable());
+    faces.sort_unstable();
+    faces.windows(2).any(|pair| pair[0] == pair[1])
 }
