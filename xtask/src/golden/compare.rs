@@ -105,7 +105,9 @@ pub(crate) fn orientation(set: &IndexedFaceSet, ours: &Mesh, theirs: &IndexedFac
         let (Some(a), Some(b)) = (turned(&own), turned(theirs)) else {
             return differs(NAME, format!("{f} has other corners"));
         };
-        votes[components.face[f]][usize::from(a == b)] += 1;
+        if let Some(component) = components.face[f] {
+            votes[component as usize][usize::from(a == b)] += 1;
+        }
     }
     match votes.iter().map(|vote| vote[0].min(vote[1])).sum::<usize>() {
         0 => Comparison {
