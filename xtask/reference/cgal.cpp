@@ -126,7 +126,8 @@ void facts(Report& report, const Raw& raw, const std::string& prefix) {
                 const Vector n = CGAL::cross_product(out, in);
                 const double length = std::sqrt(n.squared_length());
                 if (length == 0) continue;
-                a = a + n * (CGAL::approximate_angle(out, in) / length);
+                // Not CGAL's approximate_angle, whose arc cosine loses half the digits near 0 and π.
+                a = a + n * (std::atan2(length, CGAL::scalar_product(out, in)) / length);
                 m = m + n / (in.squared_length() * out.squared_length());
             }
             const auto unit = [](const Vector& n) {

@@ -94,15 +94,21 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
         "smooth" => {
             let mesh = built(&raw::read(&call.input)?)?;
             let options = UniformOptions { iterations: 10, ..UniformOptions::default() };
-            time_from(report, call.repeat, || mesh.clone(), |mut mesh| {
-                let smoothed = uniform(&mut mesh, &VertexSet::new(), &options, Progress::NONE)?;
-                Ok((mesh, smoothed))
-            })
+            time_from(
+                report,
+                call.repeat,
+                || mesh.clone(),
+                |mut mesh| {
+                    let smoothed = uniform(&mut mesh, &VertexSet::new(), &options, Progress::NONE)?;
+                    Ok((mesh, smoothed))
+                },
+            )
         }
         "render" => {
             let mesh = built(&raw::read(&call.input)?)?;
             let scene = Scene::new(Model::new(&mesh));
-            let options = RenderOptions { width: 1200, height: 900, samples: 2, ..RenderOptions::default() };
+            let options =
+                RenderOptions { width: 1200, height: 900, samples: 2, ..RenderOptions::default() };
             time(report, call.repeat, || Ok(render(&scene, &options, Progress::NONE)?))
         }
         "read" => time(report, call.repeat, || built(&dgp_io::read(&call.input)?.set)),

@@ -9,6 +9,7 @@ use std::{
     hash::{DefaultHasher, Hash, Hasher},
     path::{Path, PathBuf},
     process::Command,
+    time::Duration,
 };
 
 use serde_json::Value;
@@ -17,6 +18,9 @@ use crate::shell::{self, Outcome};
 
 /// How every C++ file is compiled.
 const FLAGS: [&str; 5] = ["-std=c++17", "-O3", "-DNDEBUG", "-march=native", "-w"];
+
+/// How long a driver may take: OpenMesh circles forever around some vertices that are no manifold.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What the drivers need beside Rust, by the names of Debian's packages.
 const PACKAGES: &str =
@@ -106,7 +110,7 @@ impl Driver {
     pub(crate) fn call(&self, operation: &str, input: &Path, options: &[&str]) -> Outcome<Value> {
         let mut command = Command::new(&self.program);
         command.args(&self.first).arg(operation).arg(input).args(options);
-        let text = shell::output(&mut command)?;
+        let text = shell::output_within(&mut command, PATIENCE)?;
         serde_json::from_str(&text)
             .map_err(|error| format!("{} printed no JSON: {error}: {text}", self.name).into())
     }

@@ -2,8 +2,10 @@
 
 use std::{
     error::Error,
+    io::Read,
     path::{Path, PathBuf},
     process::{Command, Stdio},
+    time::{Duration, Instant},
 };
 
 /// What every command of xtask returns: its errors are read by people only.
@@ -50,6 +52,39 @@ pub(crate) fn output(command: &mut Command) -> Outcome<String> {
     }
     let message = String::from_utf8_lossy(&output.stderr);
     Err(format!("{}: {}\n{}", output.status, line(command), message.trim()).into())
+}
+
+/// The same, but an error also where the program takes longer than `limit`; it is then ended.
+pub(crate) fn output_within(command: &mut Command, limit: Duration) -> Outcome<String> {
+    let line = line(command);
+    let piped = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = piped.spawn().map_err(|error| format!("cannot run {line}: {error}"))?;
+    let (mut out, mut err) = (child.stdout.take(), child.stderr.take());
+    // Both pipes are emptied while it runs, so that it never waits for us.
+    let outputs = std::thread::scope(|scope| -> Outcome<[String; 2]> {
+        let out = scope.spawn(|| text(out.as_mut()));
+        let err = scope.spawn(|| text(err.as_mut()));
+        let start = Instant::now();
+        while child.try_wait()?.is_none() {
+            if start.elapsed() > limit {
+                child.kill()?;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Ok([out, err].map(|reader| reader.join().unwrap_or_default()))
+    })?;
+    let status = child.wait()?;
+    let [out, err] = outputs;
+    if status.success() { Ok(out) } else { Err(format!("{status}: {line}\n{}", err.trim()).into()) }
+}
+
+fn text(pipe: Option<&mut impl Read>) -> String {
+    let mut bytes = Vec::new();
+    if let Some(pipe) = pipe {
+        // What was read before a failure is still worth showing.
+        let _ = pipe.read_to_end(&mut bytes);
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// Whether a program of this name can be started.

@@ -64,7 +64,10 @@ pub(super) fn all() -> Vec<Case> {
             cgal: None,
             ..case("render", "a picture of 1200 × 900 pixels, four samples each", "render")
         },
-        Case { openmesh: None, ..case("dijkstra", "distances along edges from a vertex", "dijkstra") },
+        Case {
+            openmesh: None,
+            ..case("dijkstra", "distances along edges from a vertex", "dijkstra")
+        },
         Case {
             openmesh: None,
             data: Data::Soup,

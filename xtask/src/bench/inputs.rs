@@ -61,7 +61,9 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
             inputs.push(Input {
                 name: format!("{name}, shuffled"),
                 triangles,
-                raw: path, soup, files: None,
+                raw: path,
+                soup,
+                files: None,
             });
         }
     }

@@ -11,7 +11,7 @@ mod table;
 
 use std::{fs, path::Path};
 
-use dgp_mesh::{IndexedFaceSet, VertexId, topology::topology_report};
+use dgp_mesh::{IndexedFaceSet, NotManifold, VertexId, topology::topology_report};
 
 use crate::{
     peers::{Peers, Wanted},
@@ -82,7 +82,7 @@ fn answers(
             Err(error) => table.silent(&input.name, peer, &ours, &error.to_string()),
         }
     }
-    if ours.refusal.is_some() {
+    if ours.refusal.is_some_and(|reason| !matches!(reason, NotManifold::NonFinite { .. })) {
         compare_repairs(peers, &path, input, table)?;
     }
     fs::remove_file(path)?;
@@ -106,7 +106,9 @@ fn compare_repairs(peers: &Peers, path: &Path, input: &Input, table: &mut Table)
 
 fn has_equal_faces(set: &IndexedFaceSet) -> bool {
     let mut faces: Vec<Vec<usize>> = raw::faces(set);
-    faces.iter_mut().for_each(|face| face.sort_unstable());
+    for face in &mut faces {
+        face.sort_unstable();
+    }
     faces.sort_unstable();
     faces.windows(2).any(|pair| pair[0] == pair[1])
 }
