@@ -281,7 +281,9 @@ mod tests {
         let points = [[1.0, 0.0, 2.0], [-3.0, 0.5, 0.1], [0.3, -2.0, -1.0], [0.0, 2.5, 0.7]];
         let points = points.map(DVec3::from_array);
         let mut extent = Extent::EMPTY;
-        points.iter().for_each(|&p| extent.add(p, &lens));
+        for p in points {
+            extent.add(p, &lens);
+        }
         let camera = Camera::fit(&extent, &lens);
         let seen = points.map(|p| camera.project(p - camera.eye));
         let reach = |k: usize| {
