@@ -162,8 +162,18 @@ void dijkstra(Report& report, const Raw& raw, const Call& call) {
 }
 
 void repair(Report& report, const Raw& raw, const Call& call) {
-    auto corners = points(raw);
-    auto faces = soup(raw);
+    const auto all_points = points(raw);
+    const auto all_faces = soup(raw);
+    report.time(call.repeat, [&] {
+        auto corners = all_points;
+        auto faces = all_faces;
+        pmp::orient_polygon_soup(corners, faces);
+        auto mesh = std::make_unique<Mesh>();
+        if (pmp::is_polygon_soup_a_polygon_mesh(faces)) pmp::polygon_soup_to_polygon_mesh(corners, faces, *mesh);
+        return mesh;
+    });
+    auto corners = all_points;
+    auto faces = all_faces;
     report.truth("oriented", pmp::orient_polygon_soup(corners, faces));
     report.number("points", double(corners.size()));
     const bool mesh_now = pmp::is_polygon_soup_a_polygon_mesh(faces);
