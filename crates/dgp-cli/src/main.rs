@@ -1,0 +1,42 @@
+//! The command `dgp`.
+//!
+//! Each command is a file of `commands/`: its options, and one function from an input to a report.
+//! [`session`] reads, times, writes and reports; [`cli`] holds what all commands share.
+
+mod cli;
+mod commands;
+mod failure;
+mod session;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::{cli::Cli, commands::Command};
+
+fn main() -> ExitCode {
+    let Cli { command, common } = Cli::parse();
+    if let Some(threads) = common.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+        if let Err(error) = pool {
+            eprintln!("dgp: cannot start {threads} threads: {error}");
+            return ExitCode::from(1);
+        }
+    }
+    let outcome = match command {
+        Command::Info(command) => command.run(&common),
+        Command::Check(command) => command.run(&common),
+        Command::Convert(command) => command.run(&common),
+        Command::Repair(command) => command.run(&common),
+        Command::Smooth(command) => command.run(&common),
+        Command::Render(command) => command.run(&common),
+        Command::Demo(command) => command.run(&common),
+    };
+    match outcome {
+        Ok(code) => code,
+        Err(failure) => {
+            eprintln!("dgp: {failure}");
+            failure.exit_code()
+        }
+    }
+}
