@@ -57,8 +57,8 @@ pub(crate) struct Output {
     #[arg(long = "output", short = 'o', value_name = "OUTPUT")]
     pub(crate) path: PathBuf,
     /// Write as this format, whatever the extension
-    #[arg(long, value_name = "FORMAT", value_parser = format)]
-    pub(crate) output_format: Option<Format>,
+    #[arg(long = "output-format", id = "output-format", value_name = "FORMAT", value_parser = format)]
+    pub(crate) format: Option<Format>,
     /// How numbers are written; binary by default where the format has it (PLY, STL)
     #[arg(long, value_enum)]
     pub(crate) encoding: Option<EncodingName>,
@@ -88,7 +88,7 @@ impl Output {
             EncodingName::Little => Encoding::LittleEndian,
             EncodingName::Big => Encoding::BigEndian,
         });
-        WriteOptions { format: self.output_format, encoding }
+        WriteOptions { format: self.format, encoding }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::{fmt::Write, process::ExitCode};
 
 use clap::Args;
-use dgp::mesh::{Defect, DefectReport, Elements, Severity, defects};
+use dgp::mesh::{Defect, DefectReport, Elements, FaceId, Severity, VertexId, defects};
 use serde_json::{Value, json};
 
 use crate::{
@@ -100,10 +100,10 @@ pub(crate) fn elements(list: &Elements) -> Value {
         Elements::Vertices(list) => list.iter().map(|v| v.index()).collect(),
         Elements::Faces(list) => list.iter().map(|f| f.index()).collect(),
         Elements::VertexPairs(list) | Elements::Edges(list) => {
-            list.iter().map(|pair| Value::from(pair.map(|v| v.index()).to_vec())).collect()
+            list.iter().map(|pair| Value::from(pair.map(VertexId::index).to_vec())).collect()
         }
         Elements::FacePairs(list) => {
-            list.iter().map(|pair| Value::from(pair.map(|f| f.index()).to_vec())).collect()
+            list.iter().map(|pair| Value::from(pair.map(FaceId::index).to_vec())).collect()
         }
         Elements::FaceGroups(groups) => {
             groups.iter().map(|group| group.iter().map(|f| f.index()).collect::<Value>()).collect()

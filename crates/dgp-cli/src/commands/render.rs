@@ -21,6 +21,7 @@ use crate::{
 
 /// Options of `dgp render`.
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "independent switches of a command line")]
 pub(crate) struct Render {
     /// The meshes to draw, side by side; `-` for standard input
     #[arg(value_name = "INPUT", required = true)]

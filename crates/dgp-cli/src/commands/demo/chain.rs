@@ -100,7 +100,7 @@ impl Chain {
             ("defects", Model { style: marked(&found), ..Model::new(&original) }),
             ("mended", Model::new(&mended_set)),
             ("smooth", Model::new(&smooth_set)),
-            ("moved", Model { style: painted(moved, "distance moved"), ..Model::new(&smooth_set) }),
+            ("moved", Model { style: painted(moved, "moved"), ..Model::new(&smooth_set) }),
         ];
         let mut pictures = Vec::new();
         for (k, (title, model)) in models.iter().enumerate() {

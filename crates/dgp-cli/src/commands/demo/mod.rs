@@ -98,13 +98,11 @@ impl Demo {
         let index = self.output.join("index.html");
         let page = page::page(&chains);
         session.write_bytes(&index, page.as_bytes(), folder(&self.output))?;
-        let mut summary = String::new();
-        for chain in &chains {
-            summary += &format!("{}: {}\n", chain.name, chain.sentence);
-        }
-        summary += &format!("{}; open {}", session.spent(), index.display());
+        let mut lines: Vec<String> =
+            chains.iter().map(|chain| format!("{}: {}", chain.name, chain.sentence)).collect();
+        lines.push(format!("{}; open {}", session.spent(), index.display()));
         let report: Value = chains.iter().map(Chain::to_json).collect();
-        session.finish(&summary, json!({"chains": report}))?;
+        session.finish(&lines.join("\n"), json!({"chains": report}))?;
         Ok(ExitCode::SUCCESS)
     }
 }
