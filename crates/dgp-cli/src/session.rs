@@ -3,7 +3,7 @@
 use std::{
     io::{IsTerminal, Read, Write},
     ops::ControlFlow,
-    path::{Path, PathBuf},
+    path::Path,
     time::{Duration, Instant},
 };
 
@@ -190,7 +190,7 @@ impl<'a> Session<'a> {
     }
 
     /// Prints the summary and writes the JSON report.
-    pub(crate) fn finish(self, summary: &str, report: Value) -> Result<(), Failure> {
+    pub(crate) fn finish(self, summary: &str, report: &Value) -> Result<(), Failure> {
         let json_to_stdout = self.common.json.as_deref().is_some_and(is_pipe);
         if json_to_stdout && self.writes_to_stdout {
             let message = "the mesh and the report cannot both go to standard output";
@@ -226,7 +226,7 @@ impl<'a> Session<'a> {
 
 /// Whether a path stands for standard input or output.
 pub(crate) fn is_pipe(path: &Path) -> bool {
-    path == PathBuf::from("-")
+    path == "-"
 }
 
 fn read_pipe(

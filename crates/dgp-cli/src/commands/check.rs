@@ -27,7 +27,7 @@ impl Check {
             .run("checking", |progress| defects(&document.set, progress))
             .map_err(|failure| failure.in_file(&self.input.path))?;
         let is_valid = listed(&report).next().is_none();
-        session.finish(&to_text(&report), to_json(&report))?;
+        session.finish(&to_text(&report), &to_json(&report))?;
         Ok(if is_valid { ExitCode::SUCCESS } else { ExitCode::from(1) })
     }
 }

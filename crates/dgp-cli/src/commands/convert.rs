@@ -32,7 +32,7 @@ impl Convert {
             document.set.vertex_count(),
             document.set.face_count(),
         );
-        session.finish(&summary, json!({}))?;
+        session.finish(&summary, &json!({}))?;
         Ok(ExitCode::SUCCESS)
     }
 }

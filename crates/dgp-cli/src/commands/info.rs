@@ -32,7 +32,7 @@ impl Info {
         let document = session.read(&self.input)?;
         let facts = session.run("measuring", |_| Ok::<_, Failure>(Facts::of(&document.set)))?;
         let report = facts.to_json(&document);
-        session.finish(&facts.to_text(&document), report)?;
+        session.finish(&facts.to_text(&document), &report)?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -172,7 +172,7 @@ impl Render {
             options.height,
             session.spent(),
         );
-        session.finish(&summary, to_json(&report))?;
+        session.finish(&summary, &to_json(&report))?;
         Ok(ExitCode::SUCCESS)
     }
 

@@ -123,13 +123,13 @@ impl Repair {
                 Ok::<_, dgp::mesh::Error>((set.into_owned(), report))
             })
             .map_err(|failure| failure.in_file(&self.input.path))?;
-        let summary = format!("{}{} → {}", to_text(&report), size(&document.set), size(&set),);
+        let summary = format!("{}{} → {}", to_text(&report), size(&document.set), size(&set));
         let lost = document.follow(set, &report.vertices);
         if lost > 0 {
             session.warn(format!("{lost} lines and points ended at vertices that were dropped"));
         }
         session.write(&self.output, &document)?;
-        session.finish(&summary, to_json(&report))?;
+        session.finish(&summary, &to_json(&report))?;
         Ok(ExitCode::SUCCESS)
     }
 }
@@ -147,7 +147,7 @@ pub(crate) fn to_text(report: &RepairReport) -> String {
         let _ = writeln!(text, "{}: {first} ({count} in all)", sentence(change.action));
     }
     if text.is_empty() {
-        text = "nothing to repair: ".to_owned();
+        text.push_str("nothing to repair: ");
     }
     text
 }

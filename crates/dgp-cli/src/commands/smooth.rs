@@ -97,7 +97,7 @@ impl Smooth {
             report.mean_displacement,
             report.max_displacement,
         );
-        session.finish(&summary, to_json(&report))?;
+        session.finish(&summary, &to_json(&report))?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -102,7 +102,7 @@ impl Demo {
             chains.iter().map(|chain| format!("{}: {}", chain.name, chain.sentence)).collect();
         lines.push(format!("{}; open {}", session.spent(), index.display()));
         let report: Value = chains.iter().map(Chain::to_json).collect();
-        session.finish(&lines.join("\n"), json!({"chains": report}))?;
+        session.finish(&lines.join("\n"), &json!({"chains": report}))?;
         Ok(ExitCode::SUCCESS)
     }
 }
