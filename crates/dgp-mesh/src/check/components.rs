@@ -2,7 +2,12 @@
 
 use glam::DVec3;
 
-use super::{Groups, adjacency::Adjacency, union::Union};
+use super::{
+    Groups,
+    adjacency::Adjacency,
+    depth::{Rectangles, crosses},
+    union::Union,
+};
 use crate::{FaceId, FaceMap, VertexId, VertexMap};
 
 /// A volume smaller than this, relative to the sum of the sizes of its parts, may be rounding error.
@@ -81,8 +86,14 @@ impl<'a> Solids<'a> {
     /// within others.
     pub(crate) fn inward(&self) -> Groups<FaceId> {
         let mut inward = Groups::new();
+        let negative = |(k, group): (usize, &[FaceId])| self.has_negative_volume(k, group);
+        let candidates: Vec<bool> = self.faces.iter().enumerate().map(negative).collect();
+        if !candidates.contains(&true) {
+            return inward;
+        }
+        let is_cavity = self.cavities(&candidates);
         for (k, group) in self.faces.iter().enumerate() {
-            if self.has_negative_volume(k, group) && !self.is_cavity(k, group) {
+            if candidates[k] && !is_cavity[k] {
                 inward.push(group.iter().copied());
             }
         }
@@ -109,33 +120,46 @@ impl<'a> Solids<'a> {
         sum < -VOLUME_ERROR * parts
     }
 
-    /// Whether an odd number of other closed components surround this one.
-    fn is_cavity(&self, k: usize, group: &[FaceId]) -> bool {
-        let Some(&v) = group.first().and_then(|&f| self.adjacency.faces.face(f).first()) else {
-            return false;
-        };
-        let (min, max) = self.boxes[k];
-        let others = self.faces.iter().enumerate().filter(|&(j, _)| {
-            let (other_min, other_max) = self.boxes[j];
-            j != k && other_min.cmplt(min).all() && other_max.cmpgt(max).all()
-        });
-        others.filter(|(_, other)| self.winds_around(other, v)).count() % 2 == 1
-    }
-
-    /// Whether a component winds around a vertex an odd number of times, by the sum of the solid
-    /// angles of its triangles (van Oosterom & Strackee 1983).
-    fn winds_around(&self, group: &[FaceId], v: VertexId) -> bool {
-        let point = self.positions[v];
-        let mut half_angles = 0.0;
-        for &f in group {
-            self.for_each_triangle(f, |triangle| {
-                let [a, b, c] = triangle.map(|w| (self.positions[w] - point).normalize_or_zero());
-                let numerator = a.dot(b.cross(c));
-                let denominator = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
-                half_angles += numerator.atan2(denominator);
+    /// Which of the `candidates` an odd number of other components surround.
+    fn cavities(&self, candidates: &[bool]) -> Vec<bool> {
+        // Only components whose boxes hold the box of a candidate can surround it.
+        let boxes = Rectangles::new(self.boxes.clone());
+        let mut surrounds = vec![false; candidates.len()];
+        let mut inner = vec![false; candidates.len()];
+        for k in (0..candidates.len()).filter(|&k| candidates[k]) {
+            let (min, max) = self.boxes[k];
+            boxes.at(min, |j| {
+                let (other_min, other_max) = self.boxes[j];
+                if j != k && other_min.cmplt(min).all() && other_max.cmpgt(max).all() {
+                    (surrounds[j], inner[k]) = (true, true);
+                }
             });
         }
-        (half_angles / std::f64::consts::TAU).round() as i64 % 2 != 0
+        if !inner.contains(&true) {
+            return inner;
+        }
+        // Scaled by a power of two, so that the predicates neither overflow nor lose bits.
+        let reach = self.boxes.iter().map(|(min, max)| min.abs().max(max.abs()).max_element());
+        let scale = 2.0_f64.powi(-(reach.fold(1e-300, f64::max).log2().floor() as i32).max(-1000));
+        let (mut triangles, mut owners) = (Vec::new(), Vec::new());
+        for (j, group) in self.faces.iter().enumerate().filter(|&(j, _)| surrounds[j]) {
+            for &f in group {
+                self.for_each_triangle(f, |triangle| {
+                    triangles.push(triangle.map(|v| self.positions[v] * scale));
+                    owners.push(j);
+                });
+            }
+        }
+        let bounds = |&[a, b, c]: &[DVec3; 3]| (a.min(b).min(c), a.max(b).max(c));
+        let tree = Rectangles::new(triangles.iter().map(bounds).collect());
+        for (k, group) in self.faces.iter().enumerate().filter(|&(k, _)| candidates[k]) {
+            let corner = group.first().and_then(|&f| self.adjacency.faces.face(f).first());
+            let Some(point) = corner.map(|&v| self.positions[v] * scale) else { continue };
+            let mut odd = false;
+            tree.at(point, |t| odd ^= owners[t] != k && crosses(point, triangles[t]));
+            inner[k] &= odd;
+        }
+        inner
     }
 
     fn for_each_triangle(&self, f: FaceId, mut visit: impl FnMut([VertexId; 3])) {

@@ -10,6 +10,7 @@
 //!   to manifold surfaces", IEEE TVCG 2001, for the terms.
 
 mod boundary_loop;
+mod depth;
 mod duplicate_face;
 mod duplicate_vertex;
 mod elements;

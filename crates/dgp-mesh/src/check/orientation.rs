@@ -6,7 +6,7 @@
 //! disagreeing. So the fewest edges are given up where not all can agree, or nearly so, and in each
 //! connected part the side that most faces had is kept.
 
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
 
 use super::{adjacency::Adjacency, union::Union};
 use crate::{FaceId, FaceMap};
@@ -25,23 +25,10 @@ impl Orientation {
             return Orientation { turned: FaceMap::new(), disagreeing: Vec::new() };
         }
         let mut patches = agreeing_patches(adjacency);
-        let patch = |patches: &mut Union, side: usize| patches.find(adjacency.face(side).index());
-
-        // How many edges say that two patches face opposite ways.
-        let mut votes: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-        for pair in &adjacency.misoriented {
-            let mut ends = pair.map(|side| patch(&mut patches, side));
-            ends.sort_unstable();
-            if ends[0] != ends[1] {
-                *votes.entry(ends).or_default() += 1;
-            }
-        }
-        let mut order: Vec<_> = votes.into_iter().collect();
-        order.sort_by_key(|&(ends, count)| (std::cmp::Reverse(count), ends));
-        let mut parity = ParityUnion::new(adjacency.faces.len());
-        for ([p, q], _) in order {
-            parity.join_opposite(p, q);
-        }
+        let patch = |side: usize| patches.find(adjacency.face(side).index());
+        let ends: Vec<usize> = adjacency.misoriented.iter().flatten().copied().map(patch).collect();
+        let (ends, _) = ends.as_chunks::<2>();
+        let mut parity = joined(ends, adjacency.faces.len());
 
         // In each joined part keep the side of most faces, of the first face where it is a tie.
         let len = adjacency.faces.len();
@@ -80,6 +67,28 @@ fn agreeing_patches(adjacency: &Adjacency) -> Union {
     patches
 }
 
+/// The patches joined so that the ends of edges are on opposite sides, as far as they can be.
+fn joined(ends: &[[usize; 2]], len: usize) -> ParityUnion {
+    let mut parity = ParityUnion::new(len);
+    for &[p, q] in ends {
+        parity.join_opposite(p, q);
+    }
+    if ends.iter().all(|&[p, q]| parity.find(p).1 != parity.find(q).1) {
+        return parity;
+    }
+    // Contradictions: then the order counts.
+    let mut ends: Vec<[usize; 2]> = ends.iter().map(|&[p, q]| [p.min(q), p.max(q)]).collect();
+    ends.sort_unstable();
+    let mut votes: Vec<(usize, [usize; 2])> =
+        ends.chunk_by(|a, b| a == b).map(|same| (same.len(), same[0])).collect();
+    votes.sort_unstable_by_key(|&(count, ends)| (Reverse(count), ends));
+    let mut parity = ParityUnion::new(len);
+    for (_, [p, q]) in votes {
+        parity.join_opposite(p, q);
+    }
+    parity
+}
+
 /// Union–find where each element is on one of two sides of its set.
 struct ParityUnion {
     /// The parent, and whether it is on the other side.
@@ -112,7 +121,9 @@ impl ParityUnion {
     /// Puts `i` and `j` on opposite sides, unless they are in one set already.
     fn join_opposite(&mut self, i: usize, j: usize) {
         let ((p, odd_p), (q, odd_q)) = (self.find(i), self.find(j));
-        self.parents[p.max(q)] = (p.min(q) as u32, p != q && odd_p == odd_q);
+        if p != q {
+            self.parents[p.max(q)] = (p.min(q) as u32, odd_p == odd_q);
+        }
     }
 }
 

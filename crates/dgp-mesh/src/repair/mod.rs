@@ -9,8 +9,8 @@
 //! 5. turn faces over so that neighbors agree, and cut where they cannot;
 //! 6. where more than two faces meet at an edge, decide which two belong together;
 //! 7. give each fan of faces at a vertex a vertex of its own;
-//! 8. turn closed surfaces that are inside out;
-//! 9. drop components, remove flat faces, fill holes, where asked to;
+//! 8. drop components, remove flat faces, fill holes, where asked to;
+//! 9. turn closed surfaces that are inside out;
 //! 10. drop vertices of no face.
 //!
 //! - Input: any face set.
@@ -39,7 +39,7 @@ use std::{borrow::Cow, sync::Arc};
 
 use crate::check::{components::Solids, duplicates, orientation::Orientation};
 use crate::{
-    CornerId, Elements, Error, FaceId, FaceMap, IndexedFaceSet, Mesh, Progress, Tolerance,
+    CornerId, Elements, Error, FaceId, FaceMap, Groups, IndexedFaceSet, Mesh, Progress, Tolerance,
     VertexId, VertexMap, Welding, weld,
 };
 use draft::Draft;
@@ -204,9 +204,6 @@ pub fn repair_faces<'a>(
     progress.report(0.6)?;
     fans::split(&mut draft, options.crowded_edges)?;
     progress.report(0.7)?;
-    if options.orientation == Facing::Outward {
-        turn_outward(&mut draft);
-    }
     progress.report(0.8)?;
     components::keep(&mut draft, options.components);
     if options.flat_faces == FlatFaces::Remove {
@@ -215,6 +212,9 @@ pub fn repair_faces<'a>(
     progress.report(0.9)?;
     if options.hole_edges > 0 {
         holes::fill(&mut draft, options.hole_edges, progress.part(0.9, 1.0))?;
+    }
+    if options.orientation == Facing::Outward {
+        turn_outward(&mut draft);
     }
     if options.isolated_vertices == IsolatedVertices::Drop {
         draft.drop_isolated();
@@ -272,15 +272,19 @@ fn orient(draft: &mut Draft, options: &RepairOptions) -> Result<(), Error> {
 
 fn turn_outward(draft: &mut Draft) {
     let adjacency = draft.take_adjacency();
-    let mut inward = Solids::new(&draft.positions, &adjacency).inward();
+    let inward = Solids::new(&draft.positions, &adjacency).inward();
     draft.put_adjacency(adjacency);
     let mut faces: Vec<FaceId> = inward.members().to_vec();
     faces.sort_unstable();
     draft.turn(&faces);
-    for f in inward.members_mut() {
-        *f = draft.input_face(*f);
+    // Faces that fill holes were not in the input.
+    let filled_from = draft.filled_from.unwrap_or(draft.faces.len());
+    let mut turned = Groups::new();
+    for group in inward.iter() {
+        let old = group.iter().filter(|f| f.index() < filled_from);
+        turned.push(old.map(|&f| draft.input_face(f)));
     }
-    draft.record(RepairAction::TurnComponents, Elements::FaceGroups(inward));
+    draft.record(RepairAction::TurnComponents, Elements::FaceGroups(turned));
 }
 
 /// The repaired set with all data, and the maps between its elements and those of the input.

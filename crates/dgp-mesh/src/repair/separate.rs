@@ -20,6 +20,9 @@ const SAME_PAGE: f64 = 1e-9;
 /// What a pair costs whose angle is unknown, as that of a flat face: more than any other.
 const UNKNOWN: f64 = 10.0;
 
+/// Edges of more faces than this are cut apart: no surface was meant there.
+const MOST: usize = 200;
+
 /// An edge of more than two faces.
 pub(super) struct Crowd {
     pub(super) sides: Vec<usize>,
@@ -35,8 +38,8 @@ pub(super) fn separate(
 ) -> Vec<Crowd> {
     let crowd = |sides: &[usize]| {
         let pairs = match mode {
-            CrowdedEdges::Pair => pairs(adjacency, positions, sides),
-            CrowdedEdges::Cut => Vec::new(),
+            CrowdedEdges::Pair if sides.len() <= MOST => pairs(adjacency, positions, sides),
+            CrowdedEdges::Pair | CrowdedEdges::Cut => Vec::new(),
         };
         Crowd { sides: sides.to_vec(), pairs }
     };
