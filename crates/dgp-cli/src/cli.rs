@@ -54,7 +54,7 @@ pub(crate) struct Input {
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Output {
     /// The mesh to write, `-` for standard output
-    #[arg(long = "output", short = 'o', value_name = "OUTPUT")]
+    #[arg(id = "output", long = "output", short = 'o', value_name = "OUTPUT")]
     pub(crate) path: PathBuf,
     /// Write as this format, whatever the extension
     #[arg(long = "output-format", id = "output-format", value_name = "FORMAT", value_parser = format)]
