@@ -2,7 +2,10 @@
 //! memory of a few times the size of the bytes. What can be read must also survive writing.
 
 use dgp_io::{Document, Encoding, Format, WriteOptions, read_bytes, write_bytes};
-use dgp_mesh::{DVec3, FaceList, IndexedFaceSet, Mesh, Progress, VertexId};
+use dgp_mesh::{
+    DVec3, FaceList, IndexedFaceSet, Mesh, Progress, RepairOptions, Tolerance, VertexId, defects,
+    repair,
+};
 
 /// Reads an OBJ file.
 pub fn obj(bytes: &[u8]) {
@@ -43,12 +46,35 @@ pub fn build_from_faces(bytes: &[u8]) {
         faces.push(&face);
         rest = after;
     }
-    let positions: Vec<DVec3> = (0..count).map(|i| DVec3::splat(i as f64)).collect();
-    if let Ok(set) = IndexedFaceSet::new(positions, faces)
-        && let Ok(mesh) = Mesh::new(&set)
-    {
-        assert_eq!(mesh.to_indexed(), set);
+    let positions: Vec<DVec3> = (0..count).map(place).collect();
+    let Ok(set) = IndexedFaceSet::new(positions, faces) else { return };
+    let found = defects(&set, Progress::NONE).expect("nobody cancels");
+    match Mesh::new(&set) {
+        Ok(mesh) => {
+            assert!(found.is_manifold(), "{found:?}");
+            assert_eq!(mesh.to_indexed(), set);
+        }
+        Err(error) => assert!(!found.is_manifold(), "no defect explains: {error}"),
     }
+    repairs(&set, &RepairOptions::default());
+    let all = RepairOptions {
+        weld: Some(Tolerance::OfDiagonal(0.01)),
+        hole_edges: usize::MAX,
+        ..RepairOptions::default()
+    };
+    repairs(&set, &all);
+}
+
+/// Points of which some are equal, some on a line and most in general position.
+fn place(i: usize) -> DVec3 {
+    DVec3::new((i % 7) as f64, (i * i % 11) as f64, (i / 2 % 5) as f64)
+}
+
+/// Whatever the faces, a repair gives a mesh.
+fn repairs(set: &IndexedFaceSet, options: &RepairOptions) {
+    let (mesh, _) =
+        repair(set, options, Progress::NONE).unwrap_or_else(|error| panic!("{error}: {set:?}"));
+    mesh.validate().unwrap_or_else(|invalid| panic!("{invalid}: {set:?}"));
 }
 
 /// The contents of a file, if it has any, must come back from every encoding of its format.

@@ -158,6 +158,23 @@ fn counts_comments_and_colors_stand_where_they_like_in_off() {
 }
 
 #[test]
+fn attributes_that_corners_name_but_are_not_there_leave_the_geometry() {
+    // Programs write 0 or any number for "none"; whole collections of files are like this.
+    for face in ["f 1/0/0 2/0/0 3/0/0", "f 1/1/1 2/2/1 3/3/1", "f 1//-4 2//-4 3//-4"] {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}\n");
+        let (document, report) =
+            read_bytes_with(text.as_bytes(), Format::Obj, Progress::NONE).unwrap();
+        assert_eq!((document.set.vertex_count(), document.set.face_count()), (3, 1), "{face}");
+        assert_eq!(document.set.corner_attributes.names().count(), 0, "{face}");
+        let warned = report.warnings.iter().any(|warning| warning.what.contains("not there"));
+        assert!(warned, "{face}: {report:?}");
+    }
+    let vertex = fault(b"v 0 0 0\nf 0 1 1\n", Format::Obj);
+    let cause = Cause::IndexOutOfRange { what: "vertex", index: 0, count: 0, first: 1 };
+    assert_eq!(vertex, (Place::Line(2), cause));
+}
+
+#[test]
 fn off_keeps_all_its_attributes_in_each_encoding() {
     let text = "STCN4OFF\n# made by hand\n3 1 0\n\
                 0 .5 0 1 0 0 1 255 0 51 255 0 1\n1 0 0 .25 0 1 0 0 0 255 51 .5 .5\n\

@@ -272,6 +272,10 @@ impl Block {
     }
 }
 
+/// The number of an element that no file has: a texture coordinate or normal 0 is noted as any other
+/// that is not there, and the geometry is whole without it.
+const NOT_THERE: i64 = i64::MAX;
+
 /// The vertex, texture coordinate and normal of a corner, 0 where there is none.
 #[inline]
 pub(super) fn corner(cursor: &mut Cursor<'_>) -> Result<[i64; 3], Fault> {
@@ -284,10 +288,10 @@ pub(super) fn corner(cursor: &mut Cursor<'_>) -> Result<[i64; 3], Fault> {
     while cursor.peek() == b'/' && field < 3 {
         cursor.at += 1;
         given = cursor.integer_prefix();
-        if given == Some(0) {
-            return Err(out_of_range(start, field, 0, 0));
-        }
-        numbers[field] = given.unwrap_or(0);
+        numbers[field] = match given {
+            Some(0) => NOT_THERE,
+            given => given.unwrap_or(0),
+        };
         field += 1;
     }
     let ends = cursor.is_at_end() || cursor.peek() <= b' ' || cursor.peek() == b'\\';
