@@ -9,6 +9,7 @@
 //! The first of the old vertices gives position and data, and the new ones are numbered in the order of
 //! those. Coordinates that are no numbers equal each other bit for bit and are near nothing.
 //!
+//! - Input: any points.
 //! - Cost: exact O(V); within a distance O(V log V) on all but contrived input.
 //! - Guarantees: independent of threads; scaling points and distance by 2ᵏ changes nothing.
 //! - Reference: none for the exact form; Bentley & Friedman, "Data structures for range searching",

@@ -13,6 +13,7 @@
 //! with t the tangent of half the angle of view. With A and B the greatest left sides over all points,
 //! the nearest such camera has Z = (A + B) / 2t and X = (A − B) / 2; likewise for top and bottom.
 //!
+//! - Input: finite points.
 //! - Cost: four maxima over all points.
 //! - Reference: none.
 

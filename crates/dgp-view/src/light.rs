@@ -5,6 +5,8 @@
 //! the shape, and a sky that is brighter than the ground. Diffuse parts are Lambert's, wrapped a
 //! little around the terminator; highlights are Blinn's.
 //!
+//! - Input: a unit normal and the direction to the camera.
+//! - Cost: O(1) for a sample.
 //! - Reference: Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977.
 
 use dgp_mesh::DVec3;

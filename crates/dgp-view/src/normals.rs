@@ -7,6 +7,7 @@
 //! with α(s, v) the angle of s at v. Where all triangles at a vertex are within half the crease angle
 //! of the mean, the sum is the same for each of them and is kept once.
 //!
+//! - Input: any triangles.
 //! - Cost: O(T), and O(k²) at a sharp vertex of k triangles; flat beyond [`MOST_AROUND`].
 //! - Reference: Thürmer, Wüthrich, "Computing vertex normals from polygonal facets", Journal of
 //!   Graphics Tools 3(1), 1998, for the weights.

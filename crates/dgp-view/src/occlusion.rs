@@ -11,6 +11,7 @@
 //! with v from the pixel's point to the other's. The discs of neighboring pixels are turned against
 //! each other, and a mean over 4×4 pixels at the same depth then takes out the grain.
 //!
+//! - Input: the depth of each pixel.
 //! - Cost: 16 pixels looked up per pixel, in parallel; four bytes a pixel, twice.
 //! - Reference: McGuire, Osman, Bukowski, Hennessy, "The Alchemy screen-space ambient obscurance
 //!   algorithm", HPG 2011.

@@ -6,6 +6,7 @@
 //! least of (depth, number of the primitive) as one 64-bit key, so neither the order in which
 //! primitives come nor the number of threads can change the picture.
 //!
+//! - Input: triangles, lines and points in front of the camera.
 //! - Cost: O(primitives) to sort them into bands of rows, then the samples they cover, by bands in
 //!   parallel.
 //! - Reference: Pineda, "A parallel algorithm for polygon rasterization", SIGGRAPH 1988; Burns, Hunt,

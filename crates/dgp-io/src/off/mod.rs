@@ -1,5 +1,7 @@
 //! Geomview OFF, text and binary.
 //!
+//! - Input: any bytes.
+//! - Cost: O(bytes), text in parallel.
 //! - Reference: "OFF files", Geomview manual, section 4.2.5.
 //! - Departs from it: counts may share the line of the keyword or lack the edges, as in many real
 //!   files; binary files may be little endian and lack the color counts of faces, which is found by

@@ -14,6 +14,8 @@
 //!
 //! Text is read in double precision even where the header says `float`: what is written there counts.
 //!
+//! - Input: any bytes.
+//! - Cost: O(bytes), text in parallel.
 //! - Reference: Turk, "The PLY polygon file format", 1994.
 
 mod assemble;

@@ -4,6 +4,7 @@
 //! in a triangle or not by the parity of edges beside it, counted half-open and decided exactly, so that
 //! a ray through an edge or a vertex counts once. Triangles are found by a tree of rectangles.
 //!
+//! - Input: closed surfaces of triangles, and points on none of them.
 //! - Cost: O(n log n) for the tree, O(log n + hits) for a point.
 //! - Reference: Shewchuk 1997 for the predicates; the half-open rule is folklore.
 

@@ -4,6 +4,8 @@
 //! that is the sign of a determinant, which Shewchuk's adaptive arithmetic gets right. A bound on the
 //! rounding error settles nearly all faces without it.
 //!
+//! - Input: any faces; those with coordinates that are no numbers are passed over.
+//! - Cost: O(corners).
 //! - Reference: Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric
 //!   predicates", Discrete & Computational Geometry 1997.
 //! - Departs from it: coordinates are first scaled by a power of two, so that only products some

@@ -7,6 +7,8 @@
 //! In the plane the areas are exact but for one rounding, so that the sign of a coordinate tells on
 //! which side of an edge the point lies, in the thinnest needle too.
 //!
+//! - Input: any triangle, in the plane or in space.
+//! - Cost: O(1).
 //! - Reference: Möbius, *Der barycentrische Calcul*, 1827; Shewchuk, "Adaptive precision
 //!   floating-point arithmetic and fast robust geometric predicates", Discrete & Computational
 //!   Geometry 18, 1997 (exact sums).

@@ -12,6 +12,7 @@
 //! Each step is done only where it keeps the manifold; what is left is tried again after the steps
 //! around it, and listed in the end if nothing helps.
 //!
+//! - Input: faces that form a manifold.
 //! - Cost: O(F) for each pass; a pass that removes nothing is the last.
 //! - Reference: Botsch & Kobbelt, "A robust procedure to eliminate degenerate faces from triangle
 //!   meshes", VMV 2001.

@@ -1,3 +1,5 @@
+//! Repairs of every defect, of several at once, and of arbitrary faces.
+
 use glam::DVec3;
 use proptest::prelude::*;
 

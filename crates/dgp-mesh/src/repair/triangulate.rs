@@ -11,6 +11,7 @@
 //! compared in this order. Bends and areas are counted in small steps, so that on a flat hole, where
 //! all triangulations bend and cover the same, the shortest edges win and not the rounding errors.
 //!
+//! - Input: a closed chain of at least three vertices.
 //! - Cost: O(n³) up to [`DYNAMIC`] vertices. Longer rims are first cut down to that by taking off the
 //!   ears with the shortest diagonals, O(n log n).
 //! - Reference: Barequet & Sharir, "Filling gaps in the boundary of a polyhedron", CAGD 1995; Liepa,

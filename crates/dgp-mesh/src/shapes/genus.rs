@@ -4,6 +4,8 @@
 //! splitting its quads and averaging make it smooth: the averaging form of Catmull–Clark
 //! subdivision, in which each new vertex moves to the mean of the centers of the quads around it.
 //!
+//! - Input: the number of handles, and how often to split.
+//! - Cost: O(faces).
 //! - Reference: Warren and Weimer, *Subdivision Methods for Geometric Design*, 2001, section 7.3.
 
 use glam::DVec3;

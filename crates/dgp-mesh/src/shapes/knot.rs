@@ -3,6 +3,8 @@
 //! The cross-sections turn as little as possible along the curve (double reflection); the angle by
 //! which the last misses the first is spread evenly over all.
 //!
+//! - Input: how many vertices there are along the tube and around it.
+//! - Cost: O(faces).
 //! - Reference: Wang, Jüttler, Zheng and Liu, "Computation of rotation minimizing frames", ACM
 //!   Transactions on Graphics 27(1), 2008.
 

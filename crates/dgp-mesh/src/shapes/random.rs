@@ -5,6 +5,8 @@
 //! output = mix(state)                          two rounds of xor-shift and multiply
 //! ```
 //!
+//! - Input: any seed.
+//! - Cost: O(1) for a number.
 //! - Guarantees: period 2⁶⁴; each seed gives its own sequence, close seeds unrelated ones.
 //! - Reference: Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014;
 //!   constants of Stafford's variant 13. Not for cryptography.

@@ -7,6 +7,7 @@
 //! Costs are compared in this order: diagonals that may not be used; triangles that are flat or, but for
 //! least area, inverted; the cotangent of the smallest angle, but for least area; the sum of areas.
 //!
+//! - Input: a polygon in the plane.
 //! - Cost: O(n³) time, O(n²) memory.
 //! - Guarantees: a simple polygon has a triangulation without inverted triangles, so none is chosen.
 //! - Reference: Klincsek, "Minimal triangulations of polygonal domains", Annals of Discrete
