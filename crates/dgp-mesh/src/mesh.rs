@@ -48,8 +48,8 @@ impl Mesh {
         mesh.attributes.face = set.face_attributes.clone();
         if !set.corner_attributes.is_empty() {
             let mut corner = vec![None; mesh.halfedge_count()];
-            for (c, h) in corner_halfedges.iter().enumerate() {
-                corner[h.index()] = Some(CornerId::new(c));
+            for (c, &h) in corner_halfedges.iter().enumerate() {
+                corner[h as usize] = Some(CornerId::new(c));
             }
             mesh.attributes.corner =
                 set.corner_attributes.gather(corner.len(), |h: HalfedgeId| corner[h.index()]);

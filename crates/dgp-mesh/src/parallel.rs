@@ -64,7 +64,12 @@ pub fn reduce<I: Id, T: Send + Sync + Clone>(
     combine: impl Fn(T, T) -> T + Sync + Send,
 ) -> T {
     let blocks = map_blocks(len, BLOCK, |range| {
-        range.map(|i| f(I::from_index(i))).fold(zero.clone(), &combine)
+        // Written out, since a chain of adapters leaves a call per element.
+        let mut value = zero.clone();
+        for i in range {
+            value = combine(value, f(I::from_index(i)));
+        }
+        value
     });
     blocks.into_iter().fold(zero.clone(), &combine)
 }

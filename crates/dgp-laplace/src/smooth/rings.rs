@@ -100,6 +100,7 @@ impl Rings {
 }
 
 /// Adds the neighbors that draw `v`, and `v` to `rim` if it is on one.
+#[inline]
 fn add_ring(
     mesh: &Mesh,
     v: VertexId,
@@ -111,17 +112,18 @@ fn add_ring(
     if fixed.contains(v) || mesh.is_isolated_vertex(v) {
         return;
     }
-    let index = |w: VertexId| w.index() as u32;
-    if !mesh.is_boundary_vertex(v) {
-        neighbors.extend(mesh.vertex_neighbors(v).map(index));
+    let is_rim = mesh.is_boundary_vertex(v);
+    if is_rim && boundary == Boundary::Fixed {
         return;
     }
-    if boundary == Boundary::Fixed {
+    let start = neighbors.len();
+    for w in mesh.vertex_neighbors(v) {
+        neighbors.push(w.index() as u32);
+    }
+    if !is_rim {
         return;
     }
     rim.push(v);
-    let start = neighbors.len();
-    neighbors.extend(mesh.vertex_neighbors(v).map(index));
     if boundary == Boundary::Curve {
         // The half-edges at a boundary vertex start and end with those along the rim.
         let along = [neighbors[start], neighbors[neighbors.len() - 1]];

@@ -104,6 +104,7 @@ struct Placed<'a> {
 }
 
 impl Surface for Placed<'_> {
+    #[inline]
     fn vertex_positions(&self) -> &VertexMap<DVec3> {
         &self.positions
     }
@@ -116,6 +117,7 @@ impl Surface for Placed<'_> {
         self.mesh.polygon(f)
     }
 
+    #[inline]
     fn corners_of_triangle(&self, f: FaceId) -> Option<[VertexId; 3]> {
         self.mesh.triangle(f)
     }

@@ -1,8 +1,8 @@
 //! Half-edges from indexed faces, in linear time.
 //!
 //! Each corner of a face starts a directed side a → b. Sides are put into buckets by their smaller
-//! vertex (a counting sort), each small bucket is sorted by the larger vertex, and then the two sides
-//! of an edge are neighbors. No hashing; arrays are written in order and read where faces that are
+//! vertex (a counting sort), those that lead to the larger vertex first. Both parts of each small bucket
+//! are sorted by the larger vertex, and side by side they give the two sides of each edge. No hashing; arrays are written in order and read where faces that are
 //! close in the list are close on the surface.
 
 use std::ops::Range;
@@ -12,8 +12,8 @@ use crate::{
     VertexMap, parallel,
 };
 
-/// The half-edge that starts at each corner, in the order of [`FaceList::corners`].
-pub(crate) type CornerHalfedges = Vec<HalfedgeId>;
+/// The number of the half-edge that starts at each corner, in the order of [`FaceList::corners`].
+pub(crate) type CornerHalfedges = Vec<u32>;
 
 /// Joins faces whose vertices are all in range.
 pub(crate) fn assemble(
@@ -23,10 +23,9 @@ pub(crate) fn assemble(
     check_degrees(faces)?;
     let Edges { to, corner, corner_halfedges, vertex_halfedge, holes } =
         Edges::new(vertex_count, faces)?;
-    let (next, prev, face) = link_faces(faces, &corner, &corner_halfedges);
-    let face_halfedge =
-        parallel::map(faces.len(), |f| corner_halfedges[faces.face_start(f).index()]);
-    let mut connectivity = Connectivity { next, prev, to, face, vertex_halfedge, face_halfedge };
+    let mut connectivity = link_faces(faces, corner, &corner_halfedges);
+    connectivity.to = to;
+    connectivity.vertex_halfedge = vertex_halfedge;
     link_holes(&mut connectivity, &holes)?;
     check_fans(&connectivity)?;
     Ok((connectivity, corner_halfedges))
@@ -34,6 +33,19 @@ pub(crate) fn assemble(
 
 /// Refuses faces of fewer than three corners and faces that visit a vertex twice.
 fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
+    if faces.uniform_degree() == Some(3) {
+        let is_degenerate = |&[a, b, c]: &[VertexId; 3]| (a == b) | (b == c) | (c == a);
+        let triangles = faces.corners().as_chunks::<3>().0;
+        // Blocks without a branch per triangle; what is searched is the first bad block.
+        let mut blocks = triangles.chunks(parallel::BLOCK).enumerate();
+        let bad = blocks.find(|(_, block)| {
+            block.iter().fold(false, |bad, triangle| bad | is_degenerate(triangle))
+        });
+        return bad.map_or(Ok(()), |(b, block)| {
+            let first = block.iter().position(is_degenerate).expect("one of the block is");
+            Err(NotManifold::DegenerateFace { face: FaceId::new(b * parallel::BLOCK + first) })
+        });
+    }
     let worst = parallel::map_blocks(faces.len(), parallel::BLOCK, |block| {
         let mut sorted = Vec::new();
         block.map(FaceId::new).find(|&f| match *faces.face(f) {
@@ -60,9 +72,6 @@ fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
 pub(crate) struct Side(u64);
 
 impl Side {
-    /// Comes after every side.
-    const LAST: Side = Side(u64::MAX);
-
     #[inline]
     fn new(corner: usize, a: VertexId, b: VertexId) -> Self {
         let (smaller, larger) = (a.index().min(b.index()), a.index().max(b.index()));
@@ -88,20 +97,40 @@ impl Side {
 /// The sides of all faces in sorted buckets by smaller vertex. That of v is `[v]..[v + 1]` of the
 /// second list.
 pub(crate) fn sorted_sides(vertex_count: usize, faces: &FaceList) -> (Vec<Side>, Vec<u32>) {
-    let mut starts = vec![0_u32; vertex_count + 2];
-    for_each_side(faces, |_, a, b| starts[a.index().min(b.index()) + 2] += 1);
-    for v in 2..starts.len() {
-        starts[v] += starts[v - 1];
-    }
-    // starts[v + 1] is now where bucket v begins, and moves to its end as it fills.
-    let mut sides = vec![Side(0); faces.corners().len()];
-    for_each_side(faces, |corner, a, b| {
-        let place = &mut starts[a.index().min(b.index()) + 1];
-        sides[*place as usize] = Side::new(corner, a, b);
-        *place += 1;
-    });
+    let Buckets { mut sides, starts, .. } = Buckets::new(vertex_count, faces);
     sort_buckets(&mut sides, &starts, 0..vertex_count);
     (sides, starts)
+}
+
+/// The sides of all faces by their smaller vertex.
+struct Buckets {
+    sides: Vec<Side>,
+    /// The bucket of v is at `[v]..[v + 1]` of the sides.
+    starts: Vec<u32>,
+    /// Where the forward sides of each bucket end and the others begin.
+    middles: Vec<[u32; 2]>,
+}
+
+impl Buckets {
+    fn new(vertex_count: usize, faces: &FaceList) -> Self {
+        let mut starts = vec![0_u32; vertex_count + 1];
+        for_each_side(faces, |_, a, b| starts[a.min(b).index() + 1] += 1);
+        for v in 1..starts.len() {
+            starts[v] += starts[v - 1];
+        }
+        // Each bucket fills from both ends.
+        let mut middles: Vec<_> = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
+        let mut sides = vec![0_u64; faces.corners().len()];
+        for_each_side(faces, |corner, a, b| {
+            let backward = usize::from(a > b);
+            let end = &mut middles[a.min(b).index()][backward];
+            let place = *end - backward as u32;
+            *end = place + 1 - backward as u32;
+            sides[place as usize] = Side::new(corner, a, b).0;
+        });
+        // Zeros come from the system for nothing, sides would be written twice. This stays in place.
+        Buckets { sides: sides.into_iter().map(Side).collect(), starts, middles }
+    }
 }
 
 /// Calls `f(corner, a, b)` for each side a → b of each face, in order.
@@ -141,51 +170,32 @@ fn sort_buckets(sides: &mut [Side], starts: &[u32], vertices: Range<usize>) {
     let mut rest = sides;
     for v in vertices {
         let (bucket, others) = rest.split_at_mut((starts[v + 1] - starts[v]) as usize);
-        sort_bucket(bucket);
+        sort(bucket);
         rest = others;
     }
 }
 
-/// Sorts a bucket. Most have about six sides in no order, where branches on comparisons are guesses;
-/// up to eight go through a network of minima and maxima instead (Batcher 1968).
+/// Sorts a few sides. Most parts of buckets have up to six, in no order, where branches on comparisons
+/// are guesses; these go through networks of minima and maxima instead (Knuth, The Art of Computer
+/// Programming 3, section 5.3.4).
 #[inline]
-fn sort_bucket(bucket: &mut [Side]) {
-    const NETWORK: [(usize, usize); 19] = [
-        (0, 1),
-        (2, 3),
-        (4, 5),
-        (6, 7),
-        (0, 2),
-        (1, 3),
-        (4, 6),
-        (5, 7),
-        (1, 2),
-        (5, 6),
-        (0, 4),
-        (1, 5),
-        (2, 6),
-        (3, 7),
-        (2, 4),
-        (3, 5),
-        (1, 2),
-        (3, 4),
-        (5, 6),
-    ];
-    match bucket.len() {
-        0 | 1 => {}
-        2 => {
-            let [a, b] = [bucket[0].min(bucket[1]), bucket[0].max(bucket[1])];
-            bucket.copy_from_slice(&[a, b]);
+fn sort(sides: &mut [Side]) {
+    /// Puts the pairs in order, one after the other.
+    macro_rules! order {
+        ($($a:ident $b:ident),+) => {
+            { $((*$a, *$b) = ((*$a).min(*$b), (*$a).max(*$b));)+ }
+        };
+    }
+    match sides {
+        [] | [_] => {}
+        [a, b] => order!(a b),
+        [a, b, c] => order!(a b, b c, a b),
+        [a, b, c, d] => order!(a b, c d, a c, b d, b c),
+        [a, b, c, d, e] => order!(a d, b e, a c, b d, a b, c e, b c, d e, c d),
+        [a, b, c, d, e, f] => {
+            order!(a f, b d, c e, b c, d e, a d, c f, a b, c d, e f, b c, d e);
         }
-        3..=8 => {
-            let mut sides = [Side::LAST; 8];
-            sides[..bucket.len()].copy_from_slice(bucket);
-            for (i, j) in NETWORK {
-                (sides[i], sides[j]) = (sides[i].min(sides[j]), sides[i].max(sides[j]));
-            }
-            bucket.copy_from_slice(&sides[..bucket.len()]);
-        }
-        _ => bucket.sort_unstable(),
+        _ => sides.sort_unstable(),
     }
 }
 
@@ -193,7 +203,7 @@ fn sort_bucket(bucket: &mut [Side]) {
 struct Edges {
     to: HalfedgeMap<VertexId>,
     /// The corner each half-edge starts at; one past the last corner where it has no face.
-    corner: HalfedgeMap<u32>,
+    corner: Vec<u32>,
     corner_halfedges: CornerHalfedges,
     vertex_halfedge: VertexMap<Option<HalfedgeId>>,
     /// The half-edges without a face.
@@ -202,56 +212,108 @@ struct Edges {
 
 impl Edges {
     fn new(vertex_count: usize, faces: &FaceList) -> Result<Self, NotManifold> {
-        let (sides, starts) = sorted_sides(vertex_count, faces);
-        let none = sides.len() as u32;
-        let mut corner_halfedges = vec![HalfedgeId::new(0); sides.len()];
-        let mut vertex_halfedge = VertexMap::filled(vertex_count, None);
-        let mut holes = Vec::new();
+        let Buckets { mut sides, starts, middles } = Buckets::new(vertex_count, faces);
         // Room for an eighth of the edges on the boundary; a patchwork grows.
         let room = sides.len() / 2 + sides.len() / 16;
-        let mut to = Vec::with_capacity(room);
-        let mut corner = Vec::with_capacity(room);
-        for v in 0..vertex_count {
+        let mut numbering = Numbering {
+            none: sides.len() as u32,
+            to: Vec::with_capacity(room),
+            corner: Vec::with_capacity(room),
+            corner_halfedges: vec![0; sides.len()],
+            vertex_halfedge: VertexMap::filled(vertex_count, None),
+            holes: Vec::new(),
+        };
+        let mut rest = &mut sides[..];
+        for (v, (ends, middle)) in starts.windows(2).zip(&middles).enumerate() {
+            let (bucket, others) = rest.split_at_mut((ends[1] - ends[0]) as usize);
+            rest = others;
+            let (forward, backward) = bucket.split_at_mut((middle[0] - ends[0]) as usize);
+            sort(forward);
+            sort(backward);
             let smaller = VertexId::new(v);
-            let mut rest = &sides[starts[v] as usize..starts[v + 1] as usize];
-            while let &[side, ref others @ ..] = rest {
-                let halfedge = HalfedgeId::new(2 * to.len());
-                let larger = VertexId::new(side.larger());
-                let is_shared = others.first().is_some_and(|other| other.larger() == side.larger());
-                if is_shared {
-                    // Sorted, the forward side comes first.
-                    let (other, others) = (others[0], &others[1..]);
-                    let third = others.first().is_some_and(|s| s.larger() == side.larger());
-                    if third || side.is_forward() == other.is_forward() {
-                        return Err(obstacle([smaller, larger], rest, faces));
-                    }
-                    corner_halfedges[side.corner()] = halfedge;
-                    corner_halfedges[other.corner()] = halfedge.twin();
-                    corner.push([side.corner() as u32, other.corner() as u32]);
-                    rest = others;
-                } else {
-                    let (inside, outside, corners) = if side.is_forward() {
-                        (halfedge, halfedge.twin(), [side.corner() as u32, none])
-                    } else {
-                        (halfedge.twin(), halfedge, [none, side.corner() as u32])
-                    };
-                    corner_halfedges[side.corner()] = inside;
-                    corner.push(corners);
-                    holes.push(outside);
-                    rest = others;
-                }
-                to.push([larger, smaller]);
-                vertex_halfedge[smaller] = Some(halfedge);
-                vertex_halfedge[larger] = Some(halfedge.twin());
+            if let Err(larger) = numbering.add(smaller, forward, backward) {
+                bucket.sort_unstable();
+                let first = bucket.partition_point(|side| side.larger() < larger);
+                return Err(obstacle(smaller, &bucket[first..], faces));
             }
         }
-        let (to, corner) = (to.into_flattened().into(), corner.into_flattened().into());
+        let Numbering { to, corner, corner_halfedges, vertex_halfedge, holes, .. } = numbering;
+        let (to, corner) = (to.into_flattened().into(), corner.into_flattened());
         Ok(Edges { to, corner, corner_halfedges, vertex_halfedge, holes })
     }
 }
 
+/// The edges numbered so far.
+struct Numbering {
+    none: u32,
+    to: Vec<[VertexId; 2]>,
+    corner: Vec<[u32; 2]>,
+    corner_halfedges: CornerHalfedges,
+    vertex_halfedge: VertexMap<Option<HalfedgeId>>,
+    holes: Vec<HalfedgeId>,
+}
+
+impl Numbering {
+    /// Numbers the edges of a vertex to larger ones, given their sorted sides. If sides cannot be those
+    /// of one edge, the error is its larger vertex.
+    #[inline]
+    fn add(
+        &mut self,
+        smaller: VertexId,
+        mut forward: &[Side],
+        mut backward: &[Side],
+    ) -> Result<(), usize> {
+        if forward.is_empty() && backward.is_empty() {
+            return Ok(());
+        }
+        let mut previous = None;
+        loop {
+            let (one, other) = (forward.first(), backward.first());
+            let larger = match (one, other) {
+                (None, None) => break,
+                (Some(side), None) | (None, Some(side)) => side.larger(),
+                (Some(one), Some(other)) => one.larger().min(other.larger()),
+            };
+            if previous == Some(larger) {
+                return Err(larger);
+            }
+            previous = Some(larger);
+            let one = one.filter(|side| side.larger() == larger);
+            let other = other.filter(|side| side.larger() == larger);
+            forward = &forward[usize::from(one.is_some())..];
+            backward = &backward[usize::from(other.is_some())..];
+            self.push([smaller, VertexId::new(larger)], one.copied(), other.copied());
+        }
+        // The last one; each vertex that has a bucket starts with an edge of its own.
+        self.vertex_halfedge[smaller] = Some(HalfedgeId::new(2 * (self.to.len() - 1)));
+        Ok(())
+    }
+
+    /// Numbers the edge with these sides, of which there is at least one.
+    #[inline]
+    fn push(&mut self, [smaller, larger]: [VertexId; 2], one: Option<Side>, other: Option<Side>) {
+        let halfedge = HalfedgeId::new(2 * self.to.len());
+        let mut corner = |h: HalfedgeId, side: Option<Side>| match side {
+            Some(side) => {
+                self.corner_halfedges[side.corner()] = h.index() as u32;
+                side.corner() as u32
+            }
+            None => {
+                self.holes.push(h);
+                self.none
+            }
+        };
+        let corners = [corner(halfedge, one), corner(halfedge.twin(), other)];
+        self.corner.push(corners);
+        self.to.push([larger, smaller]);
+        // Holds only if the bucket of the larger vertex, which comes later, is empty.
+        self.vertex_halfedge[larger] = Some(halfedge.twin());
+    }
+}
+
 /// Why the first sides of this bucket cannot be the two half-edges of one edge.
-fn obstacle(vertices: [VertexId; 2], bucket: &[Side], faces: &FaceList) -> NotManifold {
+fn obstacle(smaller: VertexId, bucket: &[Side], faces: &FaceList) -> NotManifold {
+    let vertices = [smaller, VertexId::new(bucket[0].larger())];
     match bucket.iter().take_while(|side| side.larger() == bucket[0].larger()).count() {
         2 => {
             let mut faces = [0, 1].map(|k| faces.corner_face(CornerId::new(bucket[k].corner())));
@@ -262,50 +324,81 @@ fn obstacle(vertices: [VertexId; 2], bucket: &[Side], faces: &FaceList) -> NotMa
     }
 }
 
-type Links = (HalfedgeMap<HalfedgeId>, HalfedgeMap<HalfedgeId>, HalfedgeMap<Option<FaceId>>);
-
-/// Next, prev and face of the half-edges that have a face; itself, itself and none for the others.
-fn link_faces(faces: &FaceList, corner: &HalfedgeMap<u32>, halfedges: &[HalfedgeId]) -> Links {
-    // The face of a corner, its first corner, and the number of its corners.
+/// Next, prev and face of the half-edges that have a face; itself, itself and none for the others. And
+/// a half-edge of each face.
+fn link_faces(faces: &FaceList, corner: Vec<u32>, halfedges: &[u32]) -> Connectivity {
     if faces.uniform_degree() == Some(3) {
-        return link(corner, halfedges, |c| (FaceId::new(c / 3), c / 3 * 3, 3));
+        return link(
+            corner,
+            halfedges,
+            |c| (c / 3) as usize,
+            |c| if c % 3 == 2 { c - 2 } else { c + 1 },
+            |c| if c % 3 == 0 { c + 2 } else { c - 1 },
+            || halfedges.iter().step_by(3).map(|&h| HalfedgeId::new(h as usize)).collect(),
+        );
     }
     let mut corner_faces = Vec::with_capacity(halfedges.len());
     for (f, face) in faces.iter() {
         corner_faces.resize(corner_faces.len() + face.len(), f);
     }
-    link(corner, halfedges, |c| {
-        let f = corner_faces[c];
-        (f, faces.face_start(f).index(), faces.degree(f))
-    })
+    let start = |f: FaceId| faces.face_start(f).index();
+    let face = |c: u32| corner_faces[c as usize];
+    link(
+        corner,
+        halfedges,
+        |c| face(c).index(),
+        |c| {
+            let (f, following) = (face(c), c + 1);
+            let start = start(f);
+            if following as usize == start + faces.degree(f) { start as u32 } else { following }
+        },
+        |c| {
+            let f = face(c);
+            let start = start(f);
+            if c as usize == start { (start + faces.degree(f) - 1) as u32 } else { c - 1 }
+        },
+        || faces.iter().map(|(f, _)| HalfedgeId::new(halfedges[start(f)] as usize)).collect(),
+    )
 }
 
+/// Each array is written once, in order: pages that are new cost more than what is written on them.
 #[inline]
 fn link(
-    corner: &HalfedgeMap<u32>,
-    halfedges: &[HalfedgeId],
-    face: impl Fn(usize) -> (FaceId, usize, usize) + Sync + Send,
-) -> Links {
-    let none = halfedges.len();
-    let next = parallel::map(corner.len(), |h: HalfedgeId| match corner[h] as usize {
-        c if c == none => h,
-        c => {
-            let (_, start, degree) = face(c);
-            halfedges[if c + 1 == start + degree { start } else { c + 1 }]
-        }
+    corner: Vec<u32>,
+    halfedges: &[u32],
+    face: impl Fn(u32) -> usize + Sync,
+    following: impl Fn(u32) -> u32 + Sync,
+    preceding: impl Fn(u32) -> u32 + Sync,
+    first: impl FnOnce() -> Vec<HalfedgeId> + Send,
+) -> Connectivity {
+    let none = halfedges.len() as u32;
+    let halfedge = |c: u32| HalfedgeId::new(halfedges[c as usize] as usize);
+    let (next, (faces, first)) = parallel::join(
+        || {
+            let next = corner.iter().enumerate().map(|(h, &c)| match c {
+                c if c == none => HalfedgeId::new(h),
+                c => halfedge(following(c)),
+            });
+            next.collect::<Vec<_>>()
+        },
+        || {
+            let faces = corner.iter().map(|&c| (c != none).then(|| FaceId::new(face(c))));
+            (faces.collect::<Vec<_>>(), first())
+        },
+    );
+    // Takes the place of the corners.
+    let prev = corner.into_iter().enumerate().map(|(h, c)| match c {
+        c if c == none => HalfedgeId::new(h),
+        c => halfedge(preceding(c)),
     });
-    let prev = parallel::map(corner.len(), |h: HalfedgeId| match corner[h] as usize {
-        c if c == none => h,
-        c => {
-            let (_, start, degree) = face(c);
-            halfedges[if c == start { start + degree - 1 } else { c - 1 }]
-        }
-    });
-    let faces = parallel::map(corner.len(), |h: HalfedgeId| match corner[h] as usize {
-        c if c == none => None,
-        c => Some(face(c).0),
-    });
-    (next, prev, faces)
+    let prev: Vec<_> = prev.collect();
+    Connectivity {
+        next: next.into(),
+        prev: prev.into(),
+        face: faces.into(),
+        face_halfedge: first.into(),
+        ..Connectivity::default()
+    }
 }
 
 /// Chains the half-edges without a face around each hole, and lets boundary vertices start with them.
@@ -337,8 +430,11 @@ fn link_holes(connectivity: &mut Connectivity, holes: &[HalfedgeId]) -> Result<(
 /// meets all of them if and only if no vertex has a second orbit.
 fn check_fans(connectivity: &Connectivity) -> Result<(), NotManifold> {
     let valence = |v: VertexId| connectivity.valence(v);
-    let met = parallel::reduce(connectivity.vertex_count(), 0, valence, |a, b| a + b);
-    if met == connectivity.halfedge_count() {
+    let met = parallel::map_blocks(connectivity.vertex_count(), parallel::BLOCK, |block| {
+        let starts = connectivity.vertex_halfedge.values()[block].iter().flatten();
+        starts.map(|&h| orbit_length(connectivity, h)).sum::<usize>()
+    });
+    if met.into_iter().sum::<usize>() == connectivity.halfedge_count() {
         return Ok(());
     }
     let mut leaving: VertexMap<usize> = VertexMap::filled(connectivity.vertex_count(), 0);
@@ -347,6 +443,16 @@ fn check_fans(connectivity: &Connectivity) -> Result<(), NotManifold> {
     }
     let vertex = leaving.iter().find(|&(v, &count)| count != valence(v)).map(|(v, _)| v);
     Err(NotManifold::NonManifoldVertex { vertex: vertex.expect("a vertex has a second fan") })
+}
+
+/// How many half-edges leave the vertex that `h` leaves, in the fan of `h`.
+#[inline]
+fn orbit_length(connectivity: &Connectivity, h: HalfedgeId) -> usize {
+    let (mut length, mut g) = (1, connectivity.cw(h));
+    while g != h {
+        (length, g) = (length + 1, connectivity.cw(g));
+    }
+    length
 }
 
 #[cfg(test)]
@@ -358,6 +464,19 @@ mod tests {
         match Connectivity::from_faces(vertices, &FaceList::from_indices(faces)) {
             Err(Error::NotManifold(reason)) => reason,
             other => panic!("expected a refusal, got {other:?}"),
+        }
+    }
+
+    #[test]
+    fn few_sides_are_sorted_in_whichever_order_they_come() {
+        // Networks sort everything if they sort all lists of zeros and ones.
+        for len in 0..8 {
+            for bits in 0..1_u64 << len {
+                let mut sides: Vec<Side> = (0..len).map(|i| Side(bits >> i & 1)).collect();
+                sort(&mut sides);
+                assert!(sides.is_sorted(), "{len} {bits:b}");
+                assert_eq!(sides.iter().map(|side| side.0).sum::<u64>(), bits.count_ones().into());
+            }
         }
     }
 

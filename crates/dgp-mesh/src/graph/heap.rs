@@ -5,6 +5,8 @@
 //! Reference: Johnson, "Priority queues with update and finding minimum spanning trees", Information
 //! Processing Letters 4(3), 1975.
 
+use std::marker::PhantomData;
+
 use crate::Id;
 
 /// Elements with keys; gives them back smallest key first, of equal keys the smallest id first.
@@ -22,29 +24,56 @@ use crate::Id;
 /// ```
 #[derive(Clone, Debug)]
 pub struct IndexedHeap<I> {
-    nodes: Vec<Node<I>>,
+    nodes: Vec<Node>,
     /// For each element its place in `nodes`, or `OUTSIDE`.
     places: Vec<u32>,
+    ids: PhantomData<fn(I)>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Node<I> {
-    key: f64,
-    id: I,
+/// Key and id as one number, in the order of keys and then of ids: which of two comes first is a guess
+/// that processors get wrong, and numbers are compared and chosen without a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Node(u128);
+
+impl Node {
+    #[inline]
+    fn new<I: Id>(id: I, key: f64) -> Self {
+        let bits = key.to_bits();
+        // As `f64::total_cmp` orders them.
+        let ordered = if bits & SIGN == 0 { bits | SIGN } else { !bits };
+        Node(u128::from(ordered) << 32 | id.index() as u128)
+    }
+
+    #[inline]
+    fn key(self) -> f64 {
+        let ordered = (self.0 >> 32) as u64;
+        f64::from_bits(if ordered & SIGN == 0 { !ordered } else { ordered ^ SIGN })
+    }
+
+    #[inline]
+    fn index(self) -> usize {
+        self.0 as u32 as usize
+    }
+
+    #[inline]
+    fn id<I: Id>(self) -> I {
+        I::from_index(self.index())
+    }
 }
 
+const SIGN: u64 = 1 << 63;
 const OUTSIDE: u32 = u32::MAX;
 const CHILDREN: usize = 4;
 
 impl<I: Id> IndexedHeap<I> {
     /// No elements.
     pub fn new() -> Self {
-        IndexedHeap { nodes: Vec::new(), places: Vec::new() }
+        IndexedHeap { nodes: Vec::new(), places: Vec::new(), ids: PhantomData }
     }
 
     /// No elements, with room for ids below `len`.
     pub fn with_capacity(len: usize) -> Self {
-        IndexedHeap { nodes: Vec::new(), places: vec![OUTSIDE; len] }
+        IndexedHeap { nodes: Vec::new(), places: vec![OUTSIDE; len], ids: PhantomData }
     }
 
     /// All of these elements, in linear time. Of an id that comes twice the last key counts.
@@ -52,11 +81,11 @@ impl<I: Id> IndexedHeap<I> {
         let mut heap = IndexedHeap::new();
         for (id, key) in keys {
             if let Some(place) = heap.place(id) {
-                heap.nodes[place].key = key;
+                heap.nodes[place] = Node::new(id, key);
             } else {
                 heap.make_room(id);
                 heap.places[id.index()] = heap.nodes.len() as u32;
-                heap.nodes.push(Node { key, id });
+                heap.nodes.push(Node::new(id, key));
             }
         }
         for place in (0..heap.nodes.len().div_ceil(CHILDREN)).rev() {
@@ -77,25 +106,25 @@ impl<I: Id> IndexedHeap<I> {
 
     /// The key of `id`, if it is in.
     pub fn key(&self, id: I) -> Option<f64> {
-        self.place(id).map(|place| self.nodes[place].key)
+        self.place(id).map(|place| self.nodes[place].key())
     }
 
     /// The element with the smallest key.
     pub fn first(&self) -> Option<(I, f64)> {
-        self.nodes.first().map(|node| (node.id, node.key))
+        self.nodes.first().map(|node| (node.id(), node.key()))
     }
 
     /// Puts `id` in with this key, or changes its key. What is no number comes last.
     #[inline]
     pub fn set(&mut self, id: I, key: f64) {
-        let node = Node { key, id };
+        let node = Node::new(id, key);
         let Some(place) = self.place(id) else {
             self.make_room(id);
             self.nodes.push(node);
             self.rise(self.nodes.len() - 1, node);
             return;
         };
-        if before(node, self.nodes[place]) {
+        if node < self.nodes[place] {
             self.rise(place, node);
         } else {
             self.sink(place, node);
@@ -107,13 +136,13 @@ impl<I: Id> IndexedHeap<I> {
     pub fn pop(&mut self) -> Option<(I, f64)> {
         let first = *self.nodes.first()?;
         self.take(0);
-        Some((first.id, first.key))
+        Some((first.id(), first.key()))
     }
 
     /// Takes `id` out; returns its key if it was in.
     pub fn remove(&mut self, id: I) -> Option<f64> {
         let place = self.place(id)?;
-        let key = self.nodes[place].key;
+        let key = self.nodes[place].key();
         self.take(place);
         Some(key)
     }
@@ -134,12 +163,12 @@ impl<I: Id> IndexedHeap<I> {
 
     /// Takes the node at `place` out and fills the gap with the last one.
     fn take(&mut self, place: usize) {
-        self.places[self.nodes[place].id.index()] = OUTSIDE;
+        self.places[self.nodes[place].index()] = OUTSIDE;
         let Some(last) = self.nodes.pop() else { return };
         if place == self.nodes.len() {
             return;
         }
-        if place > 0 && before(last, self.nodes[(place - 1) / CHILDREN]) {
+        if place > 0 && last < self.nodes[(place - 1) / CHILDREN] {
             self.rise(place, last);
         } else {
             self.sink(place, last);
@@ -147,57 +176,55 @@ impl<I: Id> IndexedHeap<I> {
     }
 
     /// Puts `node` at `place` or above.
-    fn rise(&mut self, mut place: usize, node: Node<I>) {
+    fn rise(&mut self, mut place: usize, node: Node) {
         while place > 0 {
             let parent = (place - 1) / CHILDREN;
-            if !before(node, self.nodes[parent]) {
+            let above = self.nodes[parent];
+            if node >= above {
                 break;
             }
-            self.put(place, self.nodes[parent]);
+            self.put(place, above);
             place = parent;
         }
         self.put(place, node);
     }
 
     /// Puts `node` at `place` or below.
-    fn sink(&mut self, mut place: usize, node: Node<I>) {
+    fn sink(&mut self, mut place: usize, node: Node) {
         loop {
             let start = place * CHILDREN + 1;
-            let end = (start + CHILDREN).min(self.nodes.len());
-            let Some(mut least) = (start < end).then_some(start) else { break };
-            for child in start + 1..end {
-                if before(self.nodes[child], self.nodes[least]) {
-                    least = child;
-                }
-            }
-            if !before(self.nodes[least], node) {
+            let children = self.nodes.get(start..).unwrap_or_default();
+            let (least, child) = if let Some(&[a, b, c, d]) = children.first_chunk() {
+                let (i, one) = if b < a { (1, b) } else { (0, a) };
+                let (j, other) = if d < c { (3, d) } else { (2, c) };
+                if other < one { (j, other) } else { (i, one) }
+            } else {
+                // A node with fewer children is the last to have any.
+                let Some((i, &child)) = children.iter().enumerate().min_by_key(|(_, node)| **node)
+                else {
+                    break;
+                };
+                (i, child)
+            };
+            if child >= node {
                 break;
             }
-            self.put(place, self.nodes[least]);
-            place = least;
+            self.put(place, child);
+            place = start + least;
         }
         self.put(place, node);
     }
 
     #[inline]
-    fn put(&mut self, place: usize, node: Node<I>) {
+    fn put(&mut self, place: usize, node: Node) {
         self.nodes[place] = node;
-        self.places[node.id.index()] = place as u32;
+        self.places[node.index()] = place as u32;
     }
 }
 
 impl<I: Id> Default for IndexedHeap<I> {
     fn default() -> Self {
         IndexedHeap::new()
-    }
-}
-
-/// Whether `a` comes out before `b`.
-#[inline]
-fn before<I: Id>(a: Node<I>, b: Node<I>) -> bool {
-    match a.key.total_cmp(&b.key) {
-        std::cmp::Ordering::Equal => a.id < b.id,
-        order => order.is_lt(),
     }
 }
 

@@ -48,7 +48,13 @@ impl Frame {
     /// `point` in this frame.
     #[inline]
     pub(crate) fn local(&self, point: DVec3) -> DVec3 {
-        point * self.scale.down - self.center
+        self.moved(self.scaled(point))
+    }
+
+    /// A point at the scale of this frame, in this frame.
+    #[inline]
+    pub(crate) fn moved(&self, scaled: DVec3) -> DVec3 {
+        scaled - self.center
     }
 
     /// A point of this frame in space.
