@@ -34,17 +34,9 @@ pub(crate) fn assemble(
 /// Refuses faces of fewer than three corners and faces that visit a vertex twice.
 fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
     if faces.uniform_degree() == Some(3) {
-        let is_degenerate = |&[a, b, c]: &[VertexId; 3]| (a == b) | (b == c) | (c == a);
-        let triangles = faces.corners().as_chunks::<3>().0;
-        // Blocks without a branch per triangle; what is searched is the first bad block.
-        let mut blocks = triangles.chunks(parallel::BLOCK).enumerate();
-        let bad = blocks.find(|(_, block)| {
-            block.iter().fold(false, |bad, triangle| bad | is_degenerate(triangle))
-        });
-        return bad.map_or(Ok(()), |(b, block)| {
-            let first = block.iter().position(is_degenerate).expect("one of the block is");
-            Err(NotManifold::DegenerateFace { face: FaceId::new(b * parallel::BLOCK + first) })
-        });
+        let mut triangles = faces.corners().as_chunks::<3>().0.iter();
+        let bad = triangles.position(|&[a, b, c]| a == b || b == c || c == a);
+        return bad.map_or(Ok(()), |f| Err(NotManifold::DegenerateFace { face: FaceId::new(f) }));
     }
     let worst = parallel::map_blocks(faces.len(), parallel::BLOCK, |block| {
         let mut sorted = Vec::new();
@@ -293,15 +285,13 @@ impl Numbering {
     #[inline]
     fn push(&mut self, [smaller, larger]: [VertexId; 2], one: Option<Side>, other: Option<Side>) {
         let halfedge = HalfedgeId::new(2 * self.to.len());
-        let mut corner = |h: HalfedgeId, side: Option<Side>| match side {
-            Some(side) => {
+        let mut corner = |h: HalfedgeId, side: Option<Side>| {
+            if let Some(side) = side {
                 self.corner_halfedges[side.corner()] = h.index() as u32;
-                side.corner() as u32
+                return side.corner() as u32;
             }
-            None => {
-                self.holes.push(h);
-                self.none
-            }
+            self.holes.push(h);
+            self.none
         };
         let corners = [corner(halfedge, one), corner(halfedge.twin(), other)];
         self.corner.push(corners);
@@ -369,23 +359,23 @@ fn link(
     face: impl Fn(u32) -> usize + Sync,
     following: impl Fn(u32) -> u32 + Sync,
     preceding: impl Fn(u32) -> u32 + Sync,
-    first: impl FnOnce() -> Vec<HalfedgeId> + Send,
+    first: impl FnOnce() -> Vec<HalfedgeId>,
 ) -> Connectivity {
     let none = halfedges.len() as u32;
     let halfedge = |c: u32| HalfedgeId::new(halfedges[c as usize] as usize);
-    let (next, (faces, first)) = parallel::join(
+    // Room is made by this thread, whose allocator has what the buckets left.
+    let mut next = Vec::with_capacity(corner.len());
+    let mut faces = Vec::with_capacity(corner.len());
+    parallel::join(
         || {
-            let next = corner.iter().enumerate().map(|(h, &c)| match c {
+            next.extend(corner.iter().enumerate().map(|(h, &c)| match c {
                 c if c == none => HalfedgeId::new(h),
                 c => halfedge(following(c)),
-            });
-            next.collect::<Vec<_>>()
+            }));
         },
-        || {
-            let faces = corner.iter().map(|&c| (c != none).then(|| FaceId::new(face(c))));
-            (faces.collect::<Vec<_>>(), first())
-        },
+        || faces.extend(corner.iter().map(|&c| (c != none).then(|| FaceId::new(face(c))))),
     );
+    let first = first();
     // Takes the place of the corners.
     let prev = corner.into_iter().enumerate().map(|(h, c)| match c {
         c if c == none => HalfedgeId::new(h),
