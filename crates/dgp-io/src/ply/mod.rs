@@ -20,6 +20,7 @@ mod assemble;
 mod header;
 mod number;
 mod read;
+mod strided;
 mod table;
 mod tristrips;
 mod write;
