@@ -7,6 +7,20 @@ use crate::error::Error;
 /// Elements whose text a thread prints at a time.
 const BLOCK: usize = 1 << 13;
 
+/// After how many elements the length of the text is guessed.
+const SAMPLE: usize = 64;
+
+/// The decimal digits of the numbers below 100.
+const PAIRS: [[u8; 2]; 100] = {
+    let mut pairs = [[b'0'; 2]; 100];
+    let mut i = 0;
+    while i < 100 {
+        pairs[i] = [b'0' + i as u8 / 10, b'0' + i as u8 % 10];
+        i += 1;
+    }
+    pairs
+};
+
 /// A growing piece of a text file.
 pub(crate) struct Printer {
     pub(crate) bytes: Vec<u8>,
@@ -54,13 +68,18 @@ impl Printer {
         let mut digits = [0_u8; 20];
         let mut start = digits.len();
         let mut rest = x.unsigned_abs();
-        while rest >= 10 {
+        while rest >= 100 {
+            start -= 2;
+            digits[start..start + 2].copy_from_slice(&PAIRS[(rest % 100) as usize]);
+            rest /= 100;
+        }
+        let pair = PAIRS[rest as usize];
+        if rest >= 10 {
             start -= 1;
-            digits[start] = b'0' + (rest % 10) as u8;
-            rest /= 10;
+            digits[start] = pair[1];
         }
         start -= 1;
-        digits[start] = b'0' + rest as u8;
+        digits[start] = pair[usize::from(rest < 10)];
         if x < 0 {
             self.bytes.push(b'-');
         }
@@ -96,8 +115,13 @@ pub(crate) fn print_all(
     let chunks = parallel::map_blocks(len, BLOCK, |range| {
         let end = range.end;
         let mut printer = Printer::new();
-        for i in range {
+        for (done, i) in range.clone().enumerate() {
             print(&mut printer, i);
+            if done == SAMPLE {
+                // The rest is about as long; growing step by step would copy it several times.
+                let mean = printer.bytes.len() / (SAMPLE + 1) + 1;
+                printer.bytes.reserve(mean * (range.len() - SAMPLE));
+            }
         }
         progress.report(end as f64 / len as f64)?;
         Ok(printer.bytes)
@@ -125,6 +149,8 @@ mod tests {
         let numbers = [1.0, -0.0, 0.1, 1e300, f64::NAN, f64::NEG_INFINITY];
         assert_eq!(printed(|p| p.numbers(numbers)), "1 -0 0.1 1e+300 nan -inf");
         assert_eq!(printed(|p| p.f32(0.1)), "0.1");
-        assert_eq!(printed(|p| p.integer(i64::MIN)), i64::MIN.to_string());
+        for x in [0, 9, 10, 99, 100, 101, 999, 1000, 65_535, -7, -42, i64::MAX, i64::MIN] {
+            assert_eq!(printed(|p| p.integer(x)), x.to_string());
+        }
     }
 }

@@ -8,16 +8,6 @@ pub(crate) struct Welded {
     pub(crate) firsts: Vec<u32>,
 }
 
-/// Points with equal coordinates under one number; −0 equals 0, and a number that is none equals
-/// itself.
-pub(crate) fn weld_points(points: &[[f32; 3]]) -> Welded {
-    weld(points.len(), |i| {
-        // Adding zero makes 0 of −0.
-        let [x, y, z] = points[i].map(|x| u64::from((x + 0.0).to_bits()));
-        [x | y << 32, z]
-    })
-}
-
 /// Numbers `len` items so that those with equal keys share a number.
 pub(crate) fn weld<const N: usize>(len: usize, key: impl Fn(usize) -> [u64; N]) -> Welded {
     let mut numbers = Vec::with_capacity(len);

@@ -1,10 +1,10 @@
 //! Reading OFF.
 
-use std::ops::Range;
+use std::{mem, ops::Range};
 
 use dgp_mesh::{
     COLOR, Color, DVec2, DVec3, FaceList, IndexedFaceSet, MAX_ELEMENTS, NORMAL, Normal, Progress,
-    UV, VertexId,
+    UV, VertexId, parallel,
 };
 
 use super::{Kind, binary, keyword};
@@ -19,7 +19,7 @@ use crate::{
 pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Stop> {
     let text = Text::new(bytes, Format::Off)?;
     let mut cursor = text.start();
-    let mut parts = Parts::default();
+    let mut parts;
     let mut comments = Vec::new();
     let mut oddities = Oddities::default();
     cursor.skip_to_word(|comment| comments.push(decoded(comment)));
@@ -57,9 +57,7 @@ pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
         .into_iter()
         .find_map(|count| by_lines(text, cursor.at, &header, count, progress).transpose());
     if let Some(blocks) = blocks {
-        for block in blocks? {
-            parts.append(block);
-        }
+        parts = Parts::joined(blocks?);
     } else {
         progress.report(0.5)?;
         parts = Parts::by_words(cursor, &header)?;
@@ -422,16 +420,31 @@ impl Parts {
         Ok(())
     }
 
-    /// Adds what stands later in the file.
-    fn append(&mut self, later: Parts) {
-        let (corners, faces) = (self.corners.len() as u32, self.face_ends.len() as u32);
-        self.positions.extend(later.positions);
+    /// The parts of a file in order as one.
+    fn joined(mut blocks: Vec<Parts>) -> Self {
+        let positions: Vec<_> = blocks.iter_mut().map(|b| mem::take(&mut b.positions)).collect();
+        let corners: Vec<_> = blocks.iter_mut().map(|b| mem::take(&mut b.corners)).collect();
+        let lengths: Vec<usize> = corners.iter().map(Vec::len).collect();
+        let (positions, corners) =
+            parallel::join(move || positions.concat(), move || corners.concat());
+        let mut whole = Parts { positions, corners, ..Parts::default() };
+        whole.face_ends.reserve_exact(blocks.iter().map(|block| block.face_ends.len()).sum());
+        let mut start = 0;
+        for (block, len) in blocks.into_iter().zip(lengths) {
+            whole.append(block, start);
+            start += len as u32;
+        }
+        whole
+    }
+
+    /// Adds what stands later in the file but for positions and corners, which begin at `corners`.
+    fn append(&mut self, later: Parts, corners: u32) {
+        let faces = self.face_ends.len() as u32;
         self.weights.extend(later.weights);
         self.normals.extend(later.normals);
         self.colors.extend(later.colors);
         self.color_scale = self.color_scale.or(later.color_scale);
         self.uvs.extend(later.uvs);
-        self.corners.extend(later.corners);
         self.face_ends.extend(later.face_ends.iter().map(|end| corners + end));
         self.face_colors.extend(later.face_colors.iter().map(|&(f, color)| (faces + f, color)));
         self.face_color_scale = self.face_color_scale.or(later.face_color_scale);

@@ -22,6 +22,7 @@ mod assemble;
 mod header;
 mod number;
 mod read;
+mod strided;
 mod table;
 mod tristrips;
 mod write;

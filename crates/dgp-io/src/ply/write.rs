@@ -1,11 +1,13 @@
 //! Writing PLY.
 
+use std::ops::Range;
+
 use dgp_mesh::{
     AttributeColumn, AttributeTable, AttributeValue, COLOR, Color, DVec2, DVec3, FaceId, FaceList,
     Id, Label, NORMAL, Normal, Progress, UV, VertexId, parallel,
 };
 
-use super::{assemble::PREFIX, number::Scalar};
+use super::{assemble::PREFIX, number::Scalar, strided::Strided};
 use crate::{
     Document, Encoding, Error, NumberList,
     binary::{ByteWriter, is_f32},
@@ -120,8 +122,11 @@ struct Property<'a> {
 
 type Lookup<'a, T> = Box<dyn Fn(usize) -> T + Send + Sync + 'a>;
 
+/// Writes a number of each of some rows at its place in them.
+type Fill<'a> = Box<dyn Fn(&mut Strided<'_>, Range<usize>) + Send + Sync + 'a>;
+
 enum Value<'a> {
-    Number(Lookup<'a, f64>),
+    Number(Lookup<'a, f64>, Fill<'a>),
     /// The vertices of faces.
     Corners(Scalar, &'a FaceList),
     List(Scalar, Lookup<'a, &'a [f64]>),
@@ -130,10 +135,21 @@ enum Value<'a> {
 }
 
 impl Property<'_> {
+    /// How many bytes it takes in each row, if in all the same.
+    fn size(&self) -> Option<usize> {
+        match &self.value {
+            Value::Number(..) => Some(self.scalar.size()),
+            Value::Corners(kind, faces) => {
+                faces.uniform_degree().map(|degree| kind.size() + degree * self.scalar.size())
+            }
+            Value::List(..) | Value::Uvs(..) => None,
+        }
+    }
+
     /// The type of the length of a list.
     fn list(&self) -> Option<Scalar> {
         match self.value {
-            Value::Number(_) => None,
+            Value::Number(..) => None,
             Value::Corners(kind, _) | Value::List(kind, _) | Value::Uvs(kind, ..) => Some(kind),
         }
     }
@@ -160,9 +176,12 @@ impl<'a> Rows<'a> {
         &mut self,
         name: impl Into<String>,
         scalar: Scalar,
-        value: impl Fn(usize) -> f64 + Send + Sync + 'a,
+        value: impl Fn(usize) -> f64 + Copy + Send + Sync + 'a,
     ) {
-        let value = Value::Number(Box::new(value));
+        // A loop of its own for each property: a call per number takes longer than the number.
+        let fill =
+            move |rows: &mut Strided<'_>, range: Range<usize>| rows.fill(scalar, range.map(value));
+        let value = Value::Number(Box::new(value), Box::new(fill));
         self.properties.push(Property { name: name.into(), scalar, wide: false, value });
     }
 
@@ -305,15 +324,16 @@ impl<'a> Rows<'a> {
             }
             return true;
         }
-        let vectors = column::<I, DVec3>(table, attribute)
-            .map(|values| Box::new(move |i: usize| values[i]) as Lookup<'a, DVec3>);
-        let normals = column::<I, Normal>(table, attribute)
-            .map(|values| Box::new(move |i: usize| values[i].0) as Lookup<'a, DVec3>);
-        if let Some(vectors) = vectors.or(normals) {
-            let vectors = std::sync::Arc::new(vectors);
-            for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
-                let vectors = vectors.clone();
-                self.number(format!("{name}_{axis}"), Scalar::F64, move |i| vectors(i)[k]);
+        let axes = ["x", "y", "z"].into_iter().enumerate();
+        if let Some(values) = column::<I, DVec3>(table, attribute) {
+            for (k, axis) in axes {
+                self.number(format!("{name}_{axis}"), Scalar::F64, move |i| values[i][k]);
+            }
+            return true;
+        }
+        if let Some(values) = column::<I, Normal>(table, attribute) {
+            for (k, axis) in axes {
+                self.number(format!("{name}_{axis}"), Scalar::F64, move |i| values[i].0[k]);
             }
             return true;
         }
@@ -346,9 +366,15 @@ impl<'a> Rows<'a> {
         if self.properties.is_empty() {
             return Ok(Vec::new());
         }
+        let fixed = self.row_size();
         let chunks = parallel::map_blocks(self.count, BLOCK, |range| {
             let mut writer = ByteWriter::new(encoding);
             let end = range.end;
+            if let Some(size) = fixed {
+                let bytes = self.fixed_rows(range, size, encoding == Encoding::BigEndian);
+                progress.report(end as f64 / self.count as f64)?;
+                return Ok(bytes);
+            }
             for i in range {
                 for property in &self.properties {
                     property.put(&mut writer, i);
@@ -358,6 +384,30 @@ impl<'a> Rows<'a> {
             Ok(writer.bytes)
         });
         chunks.into_iter().collect()
+    }
+}
+
+impl Rows<'_> {
+    /// How many bytes a row takes, if all take the same: there are no lists, or only those of the
+    /// corners of faces with equally many.
+    fn row_size(&self) -> Option<usize> {
+        self.properties.iter().map(Property::size).sum()
+    }
+
+    /// Rows of `size` bytes each, property by property.
+    fn fixed_rows(&self, range: Range<usize>, size: usize, big: bool) -> Vec<u8> {
+        let mut bytes = vec![0; range.len() * size];
+        let mut at = 0;
+        for property in &self.properties {
+            let mut rows = Strided { bytes: &mut bytes, at, size, big };
+            match &property.value {
+                Value::Number(_, fill) => fill(&mut rows, range.clone()),
+                Value::Corners(kind, faces) => rows.corners(*kind, faces, range.clone()),
+                Value::List(..) | Value::Uvs(..) => unreachable!("lists have no size of their own"),
+            }
+            at += property.size().expect("all properties have a size");
+        }
+        bytes
     }
 }
 
@@ -398,7 +448,7 @@ impl Property<'_> {
 
     fn print(&self, printer: &mut Printer, i: usize) {
         match &self.value {
-            Value::Number(value) => self.print_number(printer, value(i)),
+            Value::Number(value, _) => self.print_number(printer, value(i)),
             Value::Corners(_, faces) => {
                 let face = faces.face(FaceId::new(i));
                 printer.integer(face.len() as i64);
@@ -429,7 +479,7 @@ impl Property<'_> {
     #[inline]
     fn put(&self, writer: &mut ByteWriter, i: usize) {
         match &self.value {
-            Value::Number(value) => put(writer, self.scalar, value(i)),
+            Value::Number(value, _) => put(writer, self.scalar, value(i)),
             Value::Corners(kind, faces) => {
                 let face = faces.face(FaceId::new(i));
                 put(writer, *kind, face.len() as f64);

@@ -1,6 +1,6 @@
 //! Reading binary STL.
 
-use dgp_mesh::{DVec3, FaceList, IndexedFaceSet, Progress, VertexId, parallel};
+use dgp_mesh::{DVec3, FaceId, FaceList, IndexedFaceSet, Progress, VertexId, parallel, weld_exact};
 
 use super::{FACET, HEADER, facet_count};
 use crate::{
@@ -8,7 +8,6 @@ use crate::{
     error::{Cause, Fault, Stop},
     report::Oddities,
     text::decoded,
-    weld::weld_points,
 };
 
 /// Reads a binary file.
@@ -30,17 +29,14 @@ pub(super) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
         oddities.add(what, HEADER + facets.len());
     }
     let (facets, _) = facets.as_chunks::<FACET>();
-    let points: Vec<[f32; 3]> = corners(facets);
+    let points = corners(facets);
     progress.report(0.3)?;
-    let welded = weld_points(&points);
+    let welding = weld_exact(&points);
     progress.report(0.9)?;
-    let positions: Vec<DVec3> = parallel::map::<VertexId, DVec3>(welded.firsts.len(), |v| {
-        DVec3::from_array(points[welded.firsts[v.index()] as usize].map(f64::from))
-    })
-    .into_values();
-    let corners: Vec<VertexId> =
-        welded.numbers.iter().map(|&number| VertexId::new(number as usize)).collect();
-    let set = IndexedFaceSet::new(positions, FaceList::from_corners(corners, 3))?;
+    let positions =
+        parallel::map(welding.originals.len(), |v: VertexId| points[welding.originals[v].index()]);
+    let corners = FaceList::from_corners(welding.vertices.into_values(), 3);
+    let set = IndexedFaceSet::new(positions, corners)?;
     let mut document = Document::from(set);
     compare_normals(facets, &mut oddities);
 
@@ -58,10 +54,10 @@ pub(super) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
 }
 
 /// The three corners of each facet.
-fn corners(facets: &[[u8; FACET]]) -> Vec<[f32; 3]> {
-    let triples: Vec<[[f32; 3]; 3]> = parallel::map::<dgp_mesh::FaceId, _>(facets.len(), |f| {
+fn corners(facets: &[[u8; FACET]]) -> Vec<DVec3> {
+    let triples: Vec<[DVec3; 3]> = parallel::map::<FaceId, _>(facets.len(), |f| {
         let facet = &facets[f.index()];
-        [triple(facet, 12), triple(facet, 24), triple(facet, 36)]
+        [12, 24, 36].map(|at| DVec3::from_array(triple(facet, at).map(f64::from)))
     })
     .into_values();
     triples.into_flattened()

@@ -2,14 +2,13 @@
 
 use std::ops::Range;
 
-use dgp_mesh::{DVec3, FaceList, IndexedFaceSet, Label, OBJECT, Progress, VertexId};
+use dgp_mesh::{DVec3, FaceList, IndexedFaceSet, Label, OBJECT, Progress, weld_exact};
 
 use crate::{
     Contents, Document, Encoding, Format,
     error::{Cause, Fault, Stop},
     report::Oddities,
     text::{Cursor, Text, decoded, map_blocks, shown},
-    weld::weld,
 };
 
 /// Reads a text file.
@@ -30,13 +29,12 @@ pub(super) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
         names.extend(block.names.into_iter().map(|(f, name)| (facet + f, name)));
         oddities.append(block.oddities);
     }
-    // Adding zero makes 0 of −0.
-    let welded = weld(points.len(), |i| points[i].to_array().map(|x| (x + 0.0).to_bits()));
+    let welding = weld_exact(&points);
     progress.report(0.9)?;
-    let positions: Vec<DVec3> = welded.firsts.iter().map(|&i| points[i as usize]).collect();
-    let corners: Vec<VertexId> =
-        welded.numbers.iter().map(|&number| VertexId::new(number as usize)).collect();
-    let set = IndexedFaceSet::new(positions, FaceList::from_ends(corners, &ends))?;
+    let positions: Vec<DVec3> =
+        welding.originals.values().iter().map(|&v| points[v.index()]).collect();
+    let faces = FaceList::from_ends(welding.vertices.into_values(), &ends);
+    let set = IndexedFaceSet::new(positions, faces)?;
     let mut document = Document::from(set);
     let mut labels: Vec<Label> = Vec::new();
     let mut current = Label::default();
