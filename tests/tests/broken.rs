@@ -111,6 +111,10 @@ fn defects_of_real_files_are_those_known() {
     let manifest = std::fs::read_to_string(folder.join("MANIFEST.tsv")).unwrap();
     let (mut checked, mut different) = (0, Vec::new());
     for row in manifest.lines().skip(1).map(|line| line.split('\t').collect::<Vec<_>>()) {
+        // Where the program that wrote the manifest gave up, it counted nothing: there is no V either.
+        if row[3].is_empty() {
+            continue;
+        }
         let Ok(document) = read(folder.join(row[0])) else { continue };
         let report = defects(&document.set, Progress::NONE).unwrap();
         let known: BTreeMap<&str, usize> = row[15]
