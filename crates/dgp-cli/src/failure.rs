@@ -5,6 +5,8 @@ use std::{
     process::ExitCode,
 };
 
+use dgp::mesh::{EditError, FaceId, Id, VertexId};
+
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
@@ -51,6 +53,65 @@ pub(crate) enum Failure {
         source: std::io::Error,
     },
 
+    /// An element that was asked for does not exist.
+    #[error("there is no {kind} {index}: the mesh has {count}, numbered from 0")]
+    NoElement {
+        /// What it should have been.
+        kind: &'static str,
+        /// Its number.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+
+    /// Two vertices that should have an edge have none.
+    #[error("no edge joins {} and {}; `dgp info --vertex {}` lists the neighbors of the first", vertices[0], vertices[1], vertices[0].index())]
+    NotAnEdge {
+        /// The vertices.
+        vertices: [VertexId; 2],
+    },
+
+    /// Two vertices that should be corners of one face are not.
+    #[error("{} and {} are not corners of one face", vertices[0], vertices[1])]
+    NoCommonFace {
+        /// The vertices.
+        vertices: [VertexId; 2],
+    },
+
+    /// A triangle in which points have no coordinates.
+    #[error("{face} has no area: points have no barycentric coordinates in it")]
+    NoArea {
+        /// The triangle.
+        face: FaceId,
+    },
+
+    /// No path leads from some vertices to another.
+    #[error(
+        "no path along edges leads from {} to {to}; `dgp info` tells how many components there are",
+        from.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    )]
+    NoPath {
+        /// Where it should have started.
+        from: Vec<VertexId>,
+        /// Where it should have ended.
+        to: VertexId,
+    },
+
+    /// An edit was refused.
+    #[error("edit {number}, --{edit}: {source}; nothing was written")]
+    Edit {
+        /// Which of the edits, counted from 1.
+        number: usize,
+        /// The edit as it was asked for.
+        edit: String,
+        /// Why.
+        source: Box<Failure>,
+    },
+
+    /// Why an edit was refused.
+    #[error("{0}")]
+    Refused(#[from] EditError),
+
     /// The options contradict each other or the input.
     #[error("{0}")]
     Usage(String),
@@ -63,6 +124,12 @@ impl Failure {
             Failure::Usage(_) | Failure::InFile { .. } | Failure::Io(_) => self,
             other => Failure::InFile { path: path.to_owned(), source: Box::new(other) },
         }
+    }
+
+    /// An error unless the element `id` is one of `count`.
+    pub(crate) fn need<I: Id>(id: I, count: usize) -> Result<(), Self> {
+        let (kind, index) = (I::KIND, id.index());
+        if index < count { Ok(()) } else { Err(Failure::NoElement { kind, index, count }) }
     }
 
     /// The exit code for it.

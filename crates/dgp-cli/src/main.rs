@@ -29,8 +29,12 @@ fn main() -> ExitCode {
         Command::Convert(command) => command.run(&common),
         Command::Repair(command) => command.run(&common),
         Command::Smooth(command) => command.run(&common),
+        Command::Edit(command) => command.run(&common),
+        Command::Geodesic(command) => command.run(&common),
         Command::Render(command) => command.run(&common),
         Command::Demo(command) => command.run(&common),
+        Command::Completions(command) => command.run(),
+        Command::Manual(command) => command.run(),
     };
     match outcome {
         Ok(code) => code,

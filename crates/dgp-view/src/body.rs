@@ -1,12 +1,14 @@
 //! A model made ready to draw: triangles in view coordinates, and where each comes from.
 
-use dgp_mesh::{Color, DMat3, DVec3, FaceId, FaceList, HalfedgeId, Id, Mesh, VertexId, parallel};
+use dgp_mesh::{
+    Color, DMat3, DVec3, FaceId, FaceList, HalfedgeId, Id, Mesh, TriangulationMethod, VertexId,
+    parallel, triangulate_polygon,
+};
 
 use crate::{
     BackFaces, Fill, Model, ModelReport, Paint, Placement, PointSize, Points, PointsShown, Shading,
     Shape, Stroke, Style,
     camera::{Basis, Extent, Lens},
-    triangulate::triangulate,
 };
 
 /// A model in view coordinates.
@@ -273,13 +275,9 @@ fn mesh_triangles(mesh: &Mesh, positions: &[DVec3]) -> (Vec<[u32; 3]>, Origin) {
     if !triangles.contains(&NO_TRIANGLE) {
         return (triangles, Origin::Faces);
     }
-    let mut pieces = Pieces::default();
-    for f in mesh.faces() {
-        pieces.corners.extend(mesh.face_halfedges(f).map(HalfedgeId::index));
-        pieces.vertices.extend(mesh.face_vertices(f).map(VertexId::index));
-        pieces.cut(f.index(), positions);
-    }
-    pieces.finish()
+    cut_faces(mesh.face_count(), positions, |f, polygon| {
+        polygon.extend(mesh.face_halfedges(f).map(|h| (h.index(), mesh.from(h).index())));
+    })
 }
 
 fn face_triangles(list: &FaceList, positions: &[DVec3]) -> (Vec<[u32; 3]>, Origin) {
@@ -288,52 +286,63 @@ fn face_triangles(list: &FaceList, positions: &[DVec3]) -> (Vec<[u32; 3]>, Origi
         let triangle = |f: FaceId| corners[f.index()].map(|v| v.index() as u32);
         return (parallel::map(corners.len(), triangle).into_values(), Origin::Faces);
     }
-    let mut pieces = Pieces::default();
-    for (f, face) in list.iter() {
-        pieces.corners.extend(list.face_corners(f).map(Id::index));
-        pieces.vertices.extend(face.iter().map(|v| v.index()));
-        pieces.cut(f.index(), positions);
+    cut_faces(list.len(), positions, |f, polygon| {
+        let vertices = list.face(f).iter().map(|v| v.index());
+        polygon.extend(list.face_corners(f).map(Id::index).zip(vertices));
+    })
+}
+
+/// All faces cut into triangles, given what adds the corners of a face, each with its vertex.
+fn cut_faces(
+    count: usize,
+    positions: &[DVec3],
+    polygon_of: impl Fn(FaceId, &mut Vec<(usize, usize)>) + Sync + Send,
+) -> (Vec<[u32; 3]>, Origin) {
+    let blocks = parallel::map_blocks(count, parallel::BLOCK, |range| {
+        let mut pieces = Pieces::default();
+        let mut polygon = Vec::new();
+        for f in range.map(FaceId::new) {
+            polygon.clear();
+            polygon_of(f, &mut polygon);
+            pieces.cut(f, &polygon, positions);
+        }
+        pieces
+    });
+    let mut all = Pieces::default();
+    for block in blocks {
+        all.triangles.extend(block.triangles);
+        all.corners.extend(block.corners);
+        all.faces.extend(block.faces);
+        all.sides.extend(block.sides);
     }
-    pieces.finish()
+    let origin = Origin::Pieces { faces: all.faces, corners: all.corners, sides: all.sides };
+    (all.triangles, origin)
 }
 
 /// Polygons on their way to triangles.
 #[derive(Default)]
 struct Pieces {
-    /// Of the face at hand.
-    corners: Vec<usize>,
-    vertices: Vec<usize>,
-    points: Vec<DVec3>,
-    cuts: Vec<[usize; 3]>,
-    /// Of all triangles so far.
     triangles: Vec<[u32; 3]>,
-    triangle_corners: Vec<[u32; 3]>,
+    corners: Vec<[u32; 3]>,
     faces: Vec<u32>,
     sides: Vec<u8>,
+    /// Of the face at hand.
+    points: Vec<DVec3>,
 }
 
 impl Pieces {
-    /// Cuts the face at hand into triangles and forgets it.
-    fn cut(&mut self, face: usize, positions: &[DVec3]) {
+    /// Adds the triangles of face `f`, whose corners and their vertices are given.
+    fn cut(&mut self, f: FaceId, polygon: &[(usize, usize)], positions: &[DVec3]) {
         self.points.clear();
-        self.points.extend(self.vertices.iter().map(|&v| positions[v]));
-        self.cuts.clear();
-        triangulate(&self.points, &mut self.cuts);
-        let n = self.vertices.len();
-        for cut in &self.cuts {
+        self.points.extend(polygon.iter().map(|&(_, v)| positions[v]));
+        let n = polygon.len();
+        for cut in triangulate_polygon(&self.points, TriangulationMethod::Ears) {
             let is_side = |k: usize| (cut[k] + 1) % n == cut[(k + 1) % 3];
             self.sides.push((0..3).map(|k| u8::from(is_side(k)) << k).sum());
-            self.triangles.push(cut.map(|i| self.vertices[i] as u32));
-            self.triangle_corners.push(cut.map(|i| self.corners[i] as u32));
-            self.faces.push(face as u32);
+            self.triangles.push(cut.map(|i| polygon[i].1 as u32));
+            self.corners.push(cut.map(|i| polygon[i].0 as u32));
+            self.faces.push(f.index() as u32);
         }
-        self.corners.clear();
-        self.vertices.clear();
-    }
-
-    fn finish(self) -> (Vec<[u32; 3]>, Origin) {
-        let (faces, corners) = (self.faces, self.triangle_corners);
-        (self.triangles, Origin::Pieces { faces, corners, sides: self.sides })
     }
 }
 

@@ -73,7 +73,7 @@ pub enum Error {
     /// A model without edges of its own (a face set or points) was to show edges by their ids.
     #[error(
         "model {model} of panel {panel} has no edge ids: mark its edges by their ends instead \
-         (Elements::Segments)"
+         (Marked::Segments)"
     )]
     NoEdges {
         /// The panel, counted from 0.

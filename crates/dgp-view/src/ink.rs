@@ -3,7 +3,7 @@
 use dgp_mesh::{DVec2, FaceId, FaceSet};
 
 use crate::{
-    Checker, Elements, Error, Field, Model, NOT_A_NUMBER, Paint, PointSize, Scalars, Shape,
+    Checker, Error, Field, Marked, Model, NOT_A_NUMBER, Paint, PointSize, Scalars, Shape,
     color::{Linear, linear, mix, scale},
     color_map::ColorTable,
     paint::fraction,
@@ -199,8 +199,8 @@ fn checkerboard(checker: &Checker, colors: [Linear; 2], spot: &Spot) -> Linear {
 /// Faces painted in a color of their own, later ones over earlier ones.
 pub(crate) fn marked_faces<'a>(model: &'a Model<'a>) -> Vec<(&'a FaceSet, Linear)> {
     let faces = |mark: &'a crate::Mark| match &mark.elements {
-        Elements::Faces(faces) => Some((faces, linear(mark.color))),
-        Elements::Vertices(_) | Elements::Edges(_) | Elements::Segments(_) => None,
+        Marked::Faces(faces) => Some((faces, linear(mark.color))),
+        Marked::Vertices(_) | Marked::Edges(_) | Marked::Segments(_) => None,
     };
     model.style.marks.iter().rev().filter_map(faces).collect()
 }
@@ -283,25 +283,25 @@ pub(crate) fn check_style(model: &Model<'_>, place: Place) -> Result<(), Error> 
     for mark in &style.marks {
         check_width("marks.width", mark.width)?;
         match (&mark.elements, shape) {
-            (Elements::Vertices(set), _) => {
+            (Marked::Vertices(set), _) => {
                 for v in set.iter() {
                     place.check_index("vertex", v.index(), shape.vertex_count())?;
                 }
             }
-            (Elements::Faces(set), _) => {
+            (Marked::Faces(set), _) => {
                 for f in set.iter() {
                     place.check_index("face", f.index(), shape.face_count())?;
                 }
             }
-            (Elements::Edges(set), Shape::Mesh(mesh)) => {
+            (Marked::Edges(set), Shape::Mesh(mesh)) => {
                 for e in set.iter() {
                     place.check_index("edge", e.index(), mesh.edge_count())?;
                 }
             }
-            (Elements::Edges(_), _) => {
+            (Marked::Edges(_), _) => {
                 return Err(Error::NoEdges { panel: place.panel, model: place.model });
             }
-            (Elements::Segments(segments), _) => {
+            (Marked::Segments(segments), _) => {
                 for v in segments.as_flattened() {
                     place.check_index("vertex", v.index(), shape.vertex_count())?;
                 }

@@ -47,7 +47,6 @@ mod shade;
 mod shadow;
 mod style;
 mod ticks;
-mod triangulate;
 
 pub use color_map::ColorMap;
 pub use error::Error;
@@ -58,6 +57,6 @@ pub use render::{picture, render};
 pub use report::{ModelReport, RenderReport};
 pub use scene::{Model, Panel, Placement, Scene, Shape};
 pub use style::{
-    ArrowLength, Arrows, BackFaces, Elements, Fill, Mark, PointSize, Points, PointsShown, Shading,
+    ArrowLength, Arrows, BackFaces, Fill, Mark, Marked, PointSize, Points, PointsShown, Shading,
     Stroke, Style, Vectors,
 };

@@ -3,7 +3,7 @@
 use dgp_mesh::{DVec3, NORMAL, Normal};
 
 use crate::{
-    Elements, Fill, PointSize, Shape, Stroke,
+    Fill, Marked, PointSize, Shape, Stroke,
     body::Body,
     capsule::{Capsule, Look, Radius},
     color::linear,
@@ -27,7 +27,7 @@ pub(crate) fn capsules(body: &Body<'_>, ink: &Ink<'_>, pixel: f64) -> Vec<Capsul
     for mark in &style.marks {
         let stroke = Stroke { color: mark.color, width: mark.width };
         match (&mark.elements, body.shape) {
-            (Elements::Vertices(set), _) => {
+            (Marked::Vertices(set), _) => {
                 for v in set.iter() {
                     let p = body.positions[v.index()];
                     // Balls twice as wide as lines look as heavy as they do.
@@ -36,17 +36,17 @@ pub(crate) fn capsules(body: &Body<'_>, ink: &Ink<'_>, pixel: f64) -> Vec<Capsul
                     capsules.push(Capsule { ends: [p; 2], radius, color, look });
                 }
             }
-            (Elements::Edges(set), Shape::Mesh(mesh)) => {
+            (Marked::Edges(set), Shape::Mesh(mesh)) => {
                 let ends = |e| mesh.edge_vertices(e).map(|v| v.index() as u32);
                 let edges: Vec<[u32; 2]> = set.iter().map(ends).collect();
                 add_lines(body, &edges, stroke, pixel, &mut capsules);
             }
-            (Elements::Segments(segments), _) => {
+            (Marked::Segments(segments), _) => {
                 let ends = |segment: &[dgp_mesh::VertexId; 2]| segment.map(|v| v.index() as u32);
                 let segments: Vec<[u32; 2]> = segments.iter().map(ends).collect();
                 add_lines(body, &segments, stroke, pixel, &mut capsules);
             }
-            (Elements::Faces(_) | Elements::Edges(_), _) => {}
+            (Marked::Faces(_) | Marked::Edges(_), _) => {}
         }
     }
     capsules.retain(|capsule| capsule.ends.iter().all(|p| p.x.is_finite()));

@@ -110,7 +110,7 @@ pub enum PointSize {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
     /// Which.
-    pub elements: Elements,
+    pub elements: Marked,
     /// In which color.
     pub color: Color,
     /// How wide lines and points are, in pixels.
@@ -119,7 +119,7 @@ pub struct Mark {
 
 /// A set of elements.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Elements {
+pub enum Marked {
     /// Vertices, drawn as balls.
     Vertices(VertexSet),
     /// Edges of a mesh, drawn as lines.
@@ -223,7 +223,7 @@ impl Stroke {
 
 impl Mark {
     /// Elements in a signal color.
-    pub fn new(elements: Elements) -> Self {
+    pub fn new(elements: Marked) -> Self {
         Mark { elements, color: Color([0.85, 0.05, 0.30, 1.0]), width: 4.0 }
     }
 }

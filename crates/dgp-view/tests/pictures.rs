@@ -7,8 +7,8 @@ use dgp_mesh::{
     Normal, Progress, VertexId,
 };
 use dgp_view::{
-    Arrows, BackFaces, Background, Checker, ColorBars, Elements, Error, Field, Fill, Framing,
-    Image, Mark, Model, Paint, Panel, Placement, Projection, Range, RenderOptions, RenderReport,
+    Arrows, BackFaces, Background, Checker, ColorBars, Error, Field, Fill, Framing, Image, Mark,
+    Marked, Model, Paint, Panel, Placement, Projection, Range, RenderOptions, RenderReport,
     Scalars, Scene, Shape, Stroke, Style, Vectors, View, render,
 };
 
@@ -346,13 +346,13 @@ fn boundaries_and_marks_are_seen() {
     }
     let edges: EdgeSet = [diagonal].into_iter().collect();
     let ends = mesh.edge_vertices(diagonal);
-    for elements in [Elements::Edges(edges), Elements::Segments(vec![ends])] {
+    for elements in [Marked::Edges(edges), Marked::Segments(vec![ends])] {
         let (image, _) =
             draw(Shape::Mesh(&mesh), Style { marks: mark(elements), ..green() }, &options);
         assert_eq!(image.pixel(40, 40), [255, 0, 0, 255]);
     }
     let upper: FaceSet = [FaceId::new(1)].into_iter().collect();
-    let style = Style { marks: mark(Elements::Faces(upper)), ..green() };
+    let style = Style { marks: mark(Marked::Faces(upper)), ..green() };
     let (image, _) = draw(Shape::Mesh(&mesh), style, &options);
     assert_eq!([image.pixel(20, 20), image.pixel(60, 60)], [[255, 0, 0, 255], [0, 255, 0, 255]]);
 }
@@ -457,13 +457,12 @@ fn wrong_counts_options_and_sizes_are_refused() {
     let nothing = RenderOptions { width: 0, ..plain(8) };
     assert!(matches!(fail(Style::default(), &nothing), Error::ImageSize { total: 0, .. }));
     let edges =
-        Style { marks: vec![Mark::new(Elements::Edges(EdgeSet::all(1)))], ..Style::default() };
+        Style { marks: vec![Mark::new(Marked::Edges(EdgeSet::all(1)))], ..Style::default() };
     assert!(matches!(fail(edges, &plain(8)), Error::NoEdges { panel: 0, model: 0 }));
-    let far =
-        Style { marks: vec![Mark::new(Elements::Faces(FaceSet::all(2)))], ..Style::default() };
+    let far = Style { marks: vec![Mark::new(Marked::Faces(FaceSet::all(2)))], ..Style::default() };
     assert!(matches!(fail(far, &plain(8)), Error::ElementOutOfRange { index: 1, count: 1, .. }));
     let segment = vec![[VertexId::new(0), VertexId::new(3)]];
-    let far = Style { marks: vec![Mark::new(Elements::Segments(segment))], ..Style::default() };
+    let far = Style { marks: vec![Mark::new(Marked::Segments(segment))], ..Style::default() };
     assert!(matches!(fail(far, &plain(8)), Error::ElementOutOfRange { index: 3, count: 3, .. }));
     for width in [-1.0, f64::NAN, 1e9] {
         let wide = Style { boundary: Stroke { width, ..Stroke::BOLD }, ..Style::default() };
@@ -528,4 +527,21 @@ fn corner_values_of_polygon_meshes_stay_at_their_corners() {
     let (other, _) = draw(Shape::Mesh(&mesh), paint(of_mesh), &plain(40));
     assert!(one == other);
     assert_ne!(one.pixel(0, 11), one.pixel(30, 29), "the corner shows");
+}
+
+#[test]
+fn polygons_of_many_corners_keep_their_notches() {
+    // A square with a notch from above, whose walls have three thousand corners each.
+    const STEPS: usize = 3000;
+    let wall = |x: f64, i: usize| [x, 2.0 + 6.0 * i as f64 / STEPS as f64, 0.0];
+    let mut points = vec![[0.0, 8.0, 0.0], [0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0]];
+    points.extend((0..=STEPS).rev().map(|i| wall(5.0, i)));
+    points.extend((0..=STEPS).map(|i| wall(3.0, i)));
+    let polygon: Vec<usize> = (0..points.len()).collect();
+    let set = faces(&points, &[&polygon]);
+    let (image, _) = draw(Shape::Faces(&set), unlit(Paint::Uniform(GREEN)), &plain(32));
+    let wall = "#".repeat(12) + &".".repeat(8) + &"#".repeat(12);
+    let rows: Vec<String> =
+        (0..32).map(|y| if y < 24 { wall.clone() } else { "#".repeat(32) }).collect();
+    assert_eq!(cover(&image), rows);
 }

@@ -2,15 +2,28 @@
 //!
 //! | to | look at |
 //! |---|---|
-//! | build, walk, edit and check meshes | [`mesh`] |
+//! | build, walk and edit meshes | [`mesh::Mesh`], [`mesh::Connectivity`], [`mesh::Editor`] |
+//! | let data travel with them | [`mesh::AttributeTable`] |
+//! | keep faces that are no manifold | [`mesh::IndexedFaceSet`], [`mesh::PolygonSoup`], [`mesh::weld`] |
+//! | cut polygons into triangles | [`mesh::triangulate()`], [`mesh::triangulate_faces`] |
 //! | make primitives, or something that looks like a scan | [`mesh::shapes`] |
 //! | know lengths, areas, normals, volumes | [`mesh::measure`] |
 //! | know components, holes, genus | [`mesh::topology`] |
 //! | find shortest paths on edges | [`mesh::graph`] |
-//! | list what is wrong with faces, and mend it | [`mesh::defects`], [`mesh::repair`] |
+//! | list what is wrong with faces, and mend it | [`mesh::defects`], [`mesh::repair()`] |
 //! | read and write files | [`io`] |
 //! | remove noise | [`laplace::smooth`] |
 //! | draw pictures | [`view`] |
+//! | see how far a long computation is, and stop it | [`mesh::Progress`] |
+//!
+//! Programs to start from (`cargo run -p dgp --example NAME`):
+//!
+//! | `examples/` | what it does |
+//! |---|---|
+//! | `clean_scan.rs` | reads a scan, lists what is wrong, mends, smooths, writes it |
+//! | `one_rings.rs` | builds a mesh by hand and walks around its vertices, faces and holes |
+//! | `carry_attributes.rs` | edits a mesh whose data, one of them of a type of its own, follow |
+//! | `scalar_picture.rs` | draws a number per vertex with lines of equal value, and a path |
 //!
 //! A scan, read, mended, smoothed and drawn:
 //!

@@ -1,14 +1,22 @@
 //! The commands, one a file.
 
 mod check;
+mod completions;
 mod convert;
 mod demo;
+mod edit;
+mod geodesic;
 mod info;
+mod manual;
 mod render;
 mod repair;
 mod smooth;
 
+use std::path::Path;
+
 use clap::Subcommand;
+
+use crate::failure::Failure;
 
 /// What to do.
 #[derive(Debug, Subcommand)]
@@ -23,8 +31,22 @@ pub(crate) enum Command {
     Repair(repair::Repair),
     /// Remove noise
     Smooth(smooth::Smooth),
+    /// Flip, split, collapse, add and remove single elements
+    Edit(edit::Edit),
+    /// Distances from vertices along edges, and the shortest path between two
+    Geodesic(geodesic::Geodesic),
     /// Draw meshes into a PNG
     Render(render::Render),
     /// Run the whole chain on a built-in scan, or on a file, into a folder with pictures
     Demo(demo::Demo),
+    /// Print what a shell needs to complete commands and options
+    Completions(completions::Completions),
+    /// Print the manual page, or write one for each command into a folder
+    Manual(manual::Manual),
+}
+
+/// Creates a folder to write into, if it is not there.
+fn create_folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path)
+        .map_err(|source| Failure::Folder { path: path.to_owned(), source })
 }

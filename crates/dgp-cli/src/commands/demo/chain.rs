@@ -6,12 +6,11 @@ use dgp::{
     io::Document,
     laplace::smooth::{TaubinOptions, taubin},
     mesh::{
-        DVec3, Defect, DefectKind, DefectReport, Elements as Ids, IndexedFaceSet, Mesh,
-        RepairOptions, RepairReport, Severity, Tolerance, VertexId, VertexMap, VertexSet, defects,
-        repair,
+        DVec3, Defect, DefectKind, DefectReport, Elements, IndexedFaceSet, Mesh, RepairOptions,
+        RepairReport, Severity, Tolerance, VertexId, VertexMap, VertexSet, defects, repair,
     },
     view::{
-        Elements, Mark, Model, Paint, Panel, RenderOptions, Scene, Stroke, Style, attribute_paint,
+        Mark, Marked, Model, Paint, Panel, RenderOptions, Scene, Stroke, Style, attribute_paint,
         render,
     },
 };
@@ -218,10 +217,10 @@ fn marked(found: &DefectReport) -> Style {
     let mut marks = Vec::new();
     for defect in &found.defects {
         let elements = match &defect.elements {
-            Ids::Edges(edges) => Elements::Segments(edges.clone()),
-            Ids::Loops(loops) => Elements::Segments(loops.iter().flat_map(rim).collect()),
-            Ids::Vertices(list) if defect.kind == DefectKind::NonManifoldVertex => {
-                Elements::Vertices(list.iter().copied().collect())
+            Elements::Edges(edges) => Marked::Segments(edges.clone()),
+            Elements::Loops(loops) => Marked::Segments(loops.iter().flat_map(rim).collect()),
+            Elements::Vertices(list) if defect.kind == DefectKind::NonManifoldVertex => {
+                Marked::Vertices(list.iter().copied().collect())
             }
             _ => continue,
         };

@@ -16,6 +16,7 @@ use dgp::{
 use serde_json::{Value, json};
 
 use self::chain::Chain;
+use super::create_folder;
 use crate::{
     cli::{Common, Input},
     failure::Failure,
@@ -105,11 +106,6 @@ impl Demo {
         session.finish(&lines.join("\n"), &json!({"chains": report}))?;
         Ok(ExitCode::SUCCESS)
     }
-}
-
-fn create_folder(path: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(path)
-        .map_err(|source| Failure::Folder { path: path.to_owned(), source })
 }
 
 fn folder(path: &Path) -> Value {

@@ -1,4 +1,7 @@
-//! `dgp info`: topology, geometry and quality.
+//! `dgp info`: topology, geometry and quality of a whole, and what is around single elements.
+
+pub(super) mod query;
+mod values;
 
 use std::{fmt::Write, process::ExitCode};
 
@@ -13,6 +16,7 @@ use dgp::{
 };
 use serde_json::{Value, json};
 
+use self::query::Queries;
 use crate::{
     cli::{Common, Input},
     failure::Failure,
@@ -24,6 +28,8 @@ use crate::{
 pub(crate) struct Info {
     #[command(flatten)]
     input: Input,
+    #[command(flatten)]
+    queries: Queries,
 }
 
 impl Info {
@@ -31,8 +37,16 @@ impl Info {
         let mut session = Session::new("info", common);
         let document = session.read(&self.input)?;
         let facts = session.run("measuring", |_| Ok::<_, Failure>(Facts::of(&document.set)))?;
-        let report = facts.to_json(&document);
-        session.finish(&facts.to_text(&document), &report)?;
+        let mut report = facts.to_json(&document);
+        let mut text = facts.to_text(&document);
+        if !self.queries.is_empty() {
+            let mesh = session.mesh(&self.input, &document)?;
+            let (answers, lines) =
+                self.queries.answers(&mesh).map_err(|e| e.in_file(&self.input.path))?;
+            report["queries"] = answers;
+            text += &lines;
+        }
+        session.finish(&text, &report)?;
         Ok(ExitCode::SUCCESS)
     }
 }
