@@ -40,7 +40,7 @@ pub(crate) fn large() -> Vec<Input> {
     let scan = shapes::like_a_scan(&shapes::trefoil(300, 30).unwrap(), 5).unwrap();
     vec![
         Input::new("a large sphere with holes", holed.to_indexed()),
-        Input::new("a large torus of quads", bent(shapes::quad_torus(2.0, 0.7, 120, 90).unwrap())),
+        Input::new("a large torus of quads", bent(&shapes::quad_torus(2.0, 0.7, 120, 90).unwrap())),
         Input::new("a large scan", scan),
     ]
 }
@@ -136,8 +136,8 @@ fn bad() -> Vec<Input> {
 }
 
 /// Quads that are not flat.
-fn bent(mesh: Mesh) -> IndexedFaceSet {
-    moved(&mesh, |p| p + 0.05 * DVec3::new((9.0 * p.y).sin(), (7.0 * p.z).sin(), (8.0 * p.x).sin()))
+fn bent(mesh: &Mesh) -> IndexedFaceSet {
+    moved(mesh, |p| p + 0.05 * DVec3::new((9.0 * p.y).sin(), (7.0 * p.z).sin(), (8.0 * p.x).sin()))
 }
 
 fn moved(mesh: &Mesh, change: impl Fn(DVec3) -> DVec3) -> IndexedFaceSet {
