@@ -1,0 +1,35 @@
+//! Sparse matrices, and the solvers that geometry needs.
+//!
+//! | task | items |
+//! |---|---|
+//! | assemble, combine, multiply | [`SparseMatrix`] |
+//! | solve a symmetric positive definite system | [`Cholesky`], [`SymbolicCholesky`], [`CholeskyOptions`] |
+//! | some unknowns or equations are given | [`FixedSystem`], [`SoftSystem`], [`EqualitySystem`] |
+//! | keep the factor sparse | [`Ordering`], [`elimination_order`] |
+//! | long computations | [`Progress`] |
+//!
+//! ```
+//! use dgp_sparse::{Cholesky, CholeskyOptions, Progress, SparseMatrix};
+//!
+//! let laplacian = SparseMatrix::from_edges(3, &[(0, 1, 1.0), (1, 2, 1.0)])?;
+//! let matrix = laplacian.plus_diagonal(&[1.0; 3])?;
+//! let x = Cholesky::new(&matrix, &CholeskyOptions::default(), Progress::NONE)?
+//!     .solve(&[1.0, 0.0, 0.0])?;
+//! assert!((x.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+//! # Ok::<(), dgp_sparse::Error>(())
+//! ```
+
+mod cholesky;
+mod constraint;
+mod error;
+mod matrix;
+mod order;
+mod parallel;
+mod progress;
+
+pub use cholesky::{Cholesky, CholeskyOptions, SymbolicCholesky};
+pub use constraint::{EqualitySystem, FixedSystem, SoftSystem};
+pub use error::Error;
+pub use matrix::{MAX_ENTRIES, SparseMatrix};
+pub use order::{Ordering, elimination_order};
+pub use progress::{Callback, Progress};

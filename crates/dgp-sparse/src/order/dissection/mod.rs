@@ -1,0 +1,150 @@
+//! Nested dissection: cuts a graph in two by few vertices, which are eliminated last, and so on.
+//!
+//! ```text
+//! coarse ●──────────● fine        1. cluster vertices, level by level, until few are left
+//!   cut blocks → thin and          2. on each level, from coarse to fine: project the cuts found so
+//!   straighten all cuts → …           far, move them to where they are smallest, cut blocks in two
+//!                                  3. order the blocks that remain by minimum degree
+//! ```
+//!
+//! Other multilevel programs cluster each part of the graph again after each cut. Here all cuts share
+//! one clustering: each is found on the level where its block has a few hundred vertices, and moves
+//! only locally on the finer ones. The cost is some passes over the graph instead of some passes for
+//! each level of the dissection.
+//!
+//! - Input: any graph. It need not be connected.
+//! - Cost: O(edges), and O(cut log cut) for each cut.
+//! - Guarantees: same order for any number of threads.
+//! - Reference: George, "Nested dissection of a regular finite element mesh", 1973; Karypis and Kumar,
+//!   "A fast and high quality multilevel scheme for partitioning irregular graphs", 1998; Ashcraft and
+//!   Liu, "Applications of the Dulmage–Mendelsohn decomposition and network flow to graph
+//!   bisection improvement", 1998.
+//! - Departs from them: the shared clustering.
+
+mod bisect;
+mod coarsen;
+mod refine;
+mod regions;
+mod separator;
+
+use super::{
+    Graph, NONE,
+    minimum_degree::{MinimumDegree, dense_limit},
+};
+use crate::{Error, Progress, parallel};
+use coarsen::{Level, coarsen};
+use regions::Regions;
+
+/// Blocks of this many vertices of the graph are not cut further: minimum degree orders them as well.
+const LEAF: u64 = 240;
+
+/// Blocks of more vertices than this are cut on the level where they occur. More would make the search
+/// for a cut slower, fewer would make cuts that finer levels cannot mend.
+const BLOCK: usize = 200;
+
+/// An order for the whole of `graph`.
+pub(crate) fn dissection(graph: &Graph, progress: Progress<'_>) -> Result<Vec<u32>, Error> {
+    let n = graph.len();
+    // Vertices with very many neighbors would be in each cut: they come last.
+    let limit = dense_limit(n);
+    let dense: Vec<u32> =
+        (0..n as u32).filter(|&v| graph.neighbors(v as usize).len() > limit).collect();
+    if dense.is_empty() {
+        return dissect(graph, progress);
+    }
+    let sparse: Vec<u32> =
+        (0..n as u32).filter(|&v| graph.neighbors(v as usize).len() <= limit).collect();
+    let order = dissect(&subgraph(graph, &sparse), progress)?;
+    Ok(order.into_iter().map(|i| sparse[i as usize]).chain(dense).collect())
+}
+
+fn dissect(graph: &Graph, progress: Progress<'_>) -> Result<Vec<u32>, Error> {
+    let n = graph.len();
+    let levels = coarsen(graph, progress.part(0.0, 0.3))?;
+    let mut regions = Regions::new(n as u64);
+    let mut label = vec![0_u32; levels.last().map_or(n, Level::len)];
+    for (depth, level) in levels.iter().enumerate().rev() {
+        progress.report(0.3 + 0.4 * (levels.len() - depth) as f64 / levels.len() as f64)?;
+        if let Some(cluster) = &level.cluster {
+            label = cluster.iter().map(|&c| label[c as usize]).collect();
+            refine::refine(level, &mut label, &mut regions);
+        }
+        bisect::split_blocks(level, &mut label, &mut regions);
+    }
+    progress.report(0.7)?;
+    let order = eliminate(graph, &label, &regions);
+    progress.report(1.0)?;
+    Ok(order)
+}
+
+/// The graph of some vertices, renumbered as they are listed.
+fn subgraph(graph: &Graph, vertices: &[u32]) -> Graph {
+    let mut new = vec![NONE; graph.len()];
+    for (i, &v) in vertices.iter().enumerate() {
+        new[v as usize] = i as u32;
+    }
+    let (mut starts, mut neighbors) = (vec![0], Vec::new());
+    for &v in vertices {
+        let kept = graph.neighbors(v as usize).iter().map(|&w| new[w as usize]);
+        neighbors.extend(kept.filter(|&i| i != NONE));
+        starts.push(neighbors.len() as u32);
+    }
+    Graph::new(starts, neighbors)
+}
+
+/// Blocks are ordered by minimum degree, each with the cuts around it as halo; a cut comes after the
+/// two sides of it.
+fn eliminate(graph: &Graph, label: &[u32], regions: &Regions) -> Vec<u32> {
+    let (starts, members) = regions.members(label);
+    let of = |region: u32| &members[starts[region as usize] as usize..starts[region as usize + 1] as usize];
+    let sequence = regions.bottom_up();
+    // Few large chunks, since each needs a map from vertices to their place in a block.
+    let mut pieces: Vec<(u32, Vec<u32>)> =
+        sequence.iter().map(|&region| (region, Vec::new())).collect();
+    let chunk = pieces.len().div_ceil(8);
+    parallel::map_chunks(&mut pieces, chunk, |_, pieces| {
+        let mut engine = MinimumDegree::default();
+        let mut local = vec![NONE; graph.len()];
+        for (region, order) in pieces {
+            if regions.is_block(*region) {
+                *order = order_block(graph, of(*region), &mut engine, &mut local);
+            } else {
+                *order = of(*region).to_vec();
+            }
+        }
+    });
+    pieces.into_iter().flat_map(|(_, order)| order).collect()
+}
+
+fn order_block(
+    graph: &Graph,
+    block: &[u32],
+    engine: &mut MinimumDegree,
+    local: &mut [u32],
+) -> Vec<u32> {
+    for (i, &v) in block.iter().enumerate() {
+        local[v as usize] = i as u32;
+    }
+    engine.clear(block.len());
+    let mut halo = Vec::new();
+    for &v in block {
+        engine.push(graph.neighbors(v as usize).iter().map(|&w| {
+            let place = &mut local[w as usize];
+            if *place == NONE {
+                *place = (block.len() + halo.len()) as u32;
+                halo.push(w);
+            }
+            *place
+        }));
+    }
+    for &v in &halo {
+        let neighbors = graph.neighbors(v as usize).iter().map(|&w| local[w as usize]);
+        engine.push(neighbors.filter(|&i| (i as usize) < block.len()));
+    }
+    let mut order = Vec::with_capacity(block.len());
+    engine.run(|i| order.push(block[i as usize]));
+    for &v in block.iter().chain(&halo) {
+        local[v as usize] = NONE;
+    }
+    order
+}

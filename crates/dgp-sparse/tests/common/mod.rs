@@ -1,0 +1,34 @@
+//! Matrices to try things on.
+#![allow(dead_code, reason = "not every test file uses all")]
+
+use dgp_sparse::SparseMatrix;
+
+/// The Laplacian of a grid of `width` × `height` vertices.
+pub(crate) fn grid(width: usize, height: usize) -> SparseMatrix {
+    let index = |x: usize, y: usize| (x + y * width) as u32;
+    let mut edges = Vec::new();
+    for y in 0..height {
+        for x in 0..width {
+            if x + 1 < width {
+                edges.push((index(x, y), index(x + 1, y), 1.0));
+            }
+            if y + 1 < height {
+                edges.push((index(x, y), index(x, y + 1), 1.0));
+            }
+        }
+    }
+    SparseMatrix::from_edges(width * height, &edges).unwrap()
+}
+
+/// Numbers in [0, 1), the same for the same seed.
+pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        // SplitMix64.
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = state;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
