@@ -5,6 +5,7 @@
 //! | ids and data | [`VertexId`] [`HalfedgeId`] [`EdgeId`] [`FaceId`] [`CornerId`], [`VertexMap`] …, [`VertexSet`] …, [`AttributeTable`] |
 //! | first meshes | [`shapes`] |
 //! | measures | [`measure`]: lengths, areas, angles, normals, volume, boxes |
+//! | curvature | [`curvature`]: Gaussian, mean, principal with directions |
 //! | topology | [`topology`]: components, holes, Euler characteristic, genus |
 //! | representations | [`PolygonSoup`], [`IndexedFaceSet`] with its [`FaceList`], [`EdgeList`], [`Connectivity`], [`Mesh`] |
 //! | what is wrong | [`defects`] and its [`DefectReport`] |
@@ -30,6 +31,7 @@ mod attribute;
 mod build;
 mod check;
 mod connectivity;
+pub mod curvature;
 mod edge_list;
 mod edit;
 mod error;

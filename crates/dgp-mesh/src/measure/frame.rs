@@ -68,4 +68,10 @@ impl Frame {
     pub(crate) fn measure(&self, local: f64, power: u32) -> f64 {
         (0..power).fold(local, |x, _| x * self.scale.up)
     }
+
+    /// Something per length, per area, … (by `power`) of this frame in space.
+    #[inline]
+    pub(crate) fn per_measure(&self, local: f64, power: u32) -> f64 {
+        (0..power).fold(local, |x, _| x * self.scale.down)
+    }
 }

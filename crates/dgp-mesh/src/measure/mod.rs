@@ -23,7 +23,7 @@ mod bounding_box;
 mod cotangent;
 mod edge;
 mod face;
-mod frame;
+pub(crate) mod frame;
 mod mass;
 mod oriented_box;
 mod report;
@@ -38,6 +38,7 @@ pub use barycentric::{
     TriangleLocation, barycentric_2d, barycentric_3d, interpolate, triangle_location,
 };
 pub use bounding_box::{BoundingBox, bounding_box};
+pub(crate) use cotangent::cross_of_shorter;
 pub use cotangent::{cotangent_weights, require_triangles};
 pub use edge::{Range, edge_length_range, edge_lengths, face_set_edge_length_range};
 pub use face::{area, face_areas, face_normals, face_vector_areas};
@@ -45,6 +46,7 @@ pub use mass::{MassProperties, mass_properties, surface_centroid, vertex_centroi
 pub use oriented_box::{OrientedBox, oriented_box};
 pub use report::{GeometryReport, geometry_report};
 pub use surface::Surface;
+pub(crate) use vertex_area::voronoi_share;
 pub use vertex_area::{VertexArea, corner_areas, vertex_areas};
 pub use vertex_normal::{NormalWeight, vertex_normal, vertex_normals};
 pub use volume::volume;

@@ -12,7 +12,7 @@
 //! - Reference: Meyer, Desbrun, Schröder and Barr, "Discrete differential-geometry operators for
 //!   triangulated 2-manifolds", VisMath 2002 (in print 2003), section 3.3.
 
-use crate::{HalfedgeId, HalfedgeMap, Mesh, VertexMap};
+use crate::{HalfedgeMap, Mesh, VertexMap};
 
 /// How a face is divided among its vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,16 +40,18 @@ pub fn corner_areas(mesh: &Mesh, kind: VertexArea) -> HalfedgeMap<f64> {
         }
         match kind {
             VertexArea::Barycentric => area / 3.0,
-            VertexArea::MixedVoronoi => area * voronoi_share(mesh, h),
+            VertexArea::MixedVoronoi => {
+                // Opposite the sides g, k, h lie the corners of h, g, k.
+                let (g, k) = (mesh.next(h), mesh.prev(h));
+                area * voronoi_share([g, k, h].map(|side| mesh.cotangent(side)))
+            }
         }
     })
 }
 
-/// The share of its triangle that belongs to the corner of `h`.
-fn voronoi_share(mesh: &Mesh, h: HalfedgeId) -> f64 {
-    let (g, k) = (mesh.next(h), mesh.prev(h));
-    // Opposite the sides g, k, h lie the corners of h, g, k.
-    let [a, b, c] = [g, k, h].map(|side| mesh.cotangent(side));
+/// The share of a triangle that belongs to its first corner, from the cotangents of its angles.
+#[inline]
+pub(crate) fn voronoi_share([a, b, c]: [f64; 3]) -> f64 {
     if a < 0.0 {
         return 0.5;
     }

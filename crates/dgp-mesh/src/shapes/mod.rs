@@ -4,6 +4,7 @@
 //! |---|---|
 //! | Platonic solids | [`tetrahedron`] [`cube`] [`octahedron`] [`dodecahedron`] [`icosahedron`] |
 //! | spheres | [`icosphere`] [`uv_sphere`] [`quad_sphere`] |
+//! | pentagons and hexagons | [`truncated_icosahedron`] [`goldberg`], their duals [`geodesic_sphere`] |
 //! | boxes | [`cuboid`] [`quad_cuboid`] |
 //! | around an axis | [`surface_of_revolution`] [`cylinder`] [`capped_cylinder`] [`cone`] [`capped_cone`] [`dumbbell`] |
 //! | flat | [`grid`] [`quad_grid`] [`disk`] [`annulus`] |
@@ -29,6 +30,7 @@ mod cuboid;
 mod damage;
 mod flat;
 mod genus;
+mod goldberg;
 mod knot;
 mod mobius;
 mod patch;
@@ -48,6 +50,7 @@ pub use cuboid::{cuboid, quad_cuboid};
 pub use damage::{flip_patch, shuffled, unweld_patch, with_holes, with_noise};
 pub use flat::{annulus, disk, grid, quad_grid};
 pub use genus::{quad_surface_of_genus, surface_of_genus};
+pub use goldberg::{geodesic_sphere, goldberg, truncated_icosahedron};
 pub use knot::trefoil;
 pub use mobius::mobius_strip;
 pub use platonic::{cube, dodecahedron, icosahedron, octahedron, tetrahedron};

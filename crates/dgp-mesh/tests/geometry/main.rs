@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod convergence;
+mod curvature;
 mod invariance;
 mod neighborhoods;
 mod search;
