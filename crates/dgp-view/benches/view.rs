@@ -26,14 +26,19 @@ fn pictures(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("render");
     group.sample_size(10);
     let options = RenderOptions::default();
+    let bare = RenderOptions { occlusion: 0.0, shadow: 0.0, ..options };
     for n in [187, 418, 1000] {
         let set = torus(n);
         let triangles = set.face_count();
-        let styles = [("smooth", Style::default()), ("faceted", Style::faceted())];
-        for (name, style) in styles {
+        let cases = [
+            ("smooth", Style::default(), &options),
+            ("smooth without occlusion and shadow", Style::default(), &bare),
+            ("faceted", Style::faceted(), &options),
+        ];
+        for (name, style, options) in cases {
             let scene = Scene::new(Model { style, ..Model::new(&set) });
             group.bench_function(BenchmarkId::new(name, triangles), |bencher| {
-                bencher.iter(|| render(&scene, &options, Progress::NONE));
+                bencher.iter(|| render(&scene, options, Progress::NONE));
             });
         }
     }

@@ -1,5 +1,7 @@
 //! A model made ready to draw: triangles in view coordinates, and where each comes from.
 
+use std::borrow::Cow;
+
 use dgp_mesh::{
     Color, DMat3, DVec3, FaceId, FaceList, HalfedgeId, Id, Mesh, TriangulationMethod, VertexId,
     parallel, triangulate_polygon,
@@ -20,7 +22,9 @@ pub(crate) struct Body<'a> {
     /// Where each vertex is; NaN where that is no place. Relative to the eye once there is a camera.
     pub(crate) positions: Vec<DVec3>,
     /// Vertices of triangles that cover the faces.
-    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) triangles: Cow<'a, [[u32; 3]]>,
+    /// Which vertices are drawn; `None` for all.
+    used: Option<Vec<bool>>,
     pub(crate) origin: Origin,
     pub(crate) report: ModelReport,
 }
@@ -134,22 +138,46 @@ impl<'a> Body<'a> {
             style: &model.style,
             turn: frame.normals(&model.placement),
             positions,
-            triangles,
+            triangles: Cow::Owned(triangles),
+            used: None,
             origin,
             report: ModelReport::default(),
         };
+        if !body.shows_points() {
+            body.used = used(body.positions.len(), &body.triangles);
+        }
         body.count();
         body
     }
 
     /// A body that is no model: triangles in one color.
     pub(crate) fn plain(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
+        let used = used(positions.len(), &triangles);
+        Body::of_triangles(positions, Cow::Owned(triangles), used)
+    }
+
+    /// The same triangles in one color, with their vertices elsewhere.
+    pub(crate) fn moved(&self, positions: Vec<DVec3>) -> Body<'_> {
+        let used = if self.shows_points() {
+            used(positions.len(), &self.triangles)
+        } else {
+            self.used.clone()
+        };
+        Body::of_triangles(positions, Cow::Borrowed(&self.triangles), used)
+    }
+
+    fn of_triangles(
+        positions: Vec<DVec3>,
+        triangles: Cow<'a, [[u32; 3]]>,
+        used: Option<Vec<bool>>,
+    ) -> Self {
         Body {
             shape: Shape::Points(&[]),
             style: &PLAIN,
             turn: DMat3::IDENTITY,
             positions,
             triangles,
+            used,
             origin: Origin::Faces,
             report: ModelReport::default(),
         }
@@ -207,30 +235,18 @@ impl<'a> Body<'a> {
 
     /// The extent of what is drawn.
     pub(crate) fn extent(&self, lens: &Lens) -> Extent {
-        let used = self.used();
+        let used = self.used.as_ref();
         let blocks = parallel::map_blocks(self.positions.len(), parallel::BLOCK, |range| {
             let mut extent = Extent::EMPTY;
             for i in range {
                 let p = self.positions[i];
-                if used.as_ref().is_none_or(|used| used[i]) && p.x.is_finite() {
+                if used.is_none_or(|used| used[i]) && p.x.is_finite() {
                     extent.add(p, lens);
                 }
             }
             extent
         });
         blocks.into_iter().fold(Extent::EMPTY, Extent::union)
-    }
-
-    /// Which vertices are drawn; `None` for all.
-    fn used(&self) -> Option<Vec<bool>> {
-        if self.shows_points() {
-            return None;
-        }
-        let mut used = vec![false; self.positions.len()];
-        for v in self.triangles.as_flattened() {
-            used[*v as usize] = true;
-        }
-        Some(used)
     }
 
     /// Counts what is drawn and what is not.
@@ -262,6 +278,15 @@ impl<'a> Body<'a> {
             Shape::Mesh(_) | Shape::Points(_) => 0,
         };
     }
+}
+
+/// Which of `count` vertices are corners of `triangles`; `None` for all.
+fn used(count: usize, triangles: &[[u32; 3]]) -> Option<Vec<bool>> {
+    let mut used = vec![false; count];
+    for v in triangles.as_flattened() {
+        used[*v as usize] = true;
+    }
+    used.contains(&false).then_some(used)
 }
 
 /// What no triangle of a mesh is.

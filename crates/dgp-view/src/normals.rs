@@ -7,7 +7,7 @@
 //! with α(s, v) the angle of s at v. Where all triangles at a vertex are within half the crease angle
 //! of the mean, the sum is the same for each of them and is kept once.
 //!
-//! - Input: any triangles.
+//! - Input: any triangles, and the vertices whose normals are wanted: those of triangles that are seen.
 //! - Cost: O(T), and O(k²) at a sharp vertex of k triangles; flat beyond [`MOST_AROUND`].
 //! - Reference: Thürmer, Wüthrich, "Computing vertex normals from polygonal facets", Journal of
 //!   Graphics Tools 3(1), 1998, for the weights.
@@ -34,10 +34,11 @@ pub(crate) enum Normals {
 }
 
 impl Normals {
-    pub(crate) fn new(body: &Body<'_>) -> Self {
+    /// Those of vertices that are not `wanted` may be anything.
+    pub(crate) fn new(body: &Body<'_>, wanted: &[bool]) -> Self {
         match body.style.shading {
             Shading::Flat => flat(body),
-            Shading::Smooth { crease_angle } => smooth(body, crease_angle),
+            Shading::Smooth { crease_angle } => smooth(body, wanted, crease_angle),
         }
     }
 
@@ -88,12 +89,16 @@ fn flat(body: &Body<'_>) -> Normals {
     Normals::Polygons(sums.into_iter().map(|n| direction(n).as_vec3().to_array()).collect())
 }
 
-fn smooth(body: &Body<'_>, crease_angle: f64) -> Normals {
-    let fans = parallel::map(body.triangles.len(), |t: FaceId| Fan::new(body, t.index()));
+fn smooth(body: &Body<'_>, wanted: &[bool], crease_angle: f64) -> Normals {
+    let fan = |t: FaceId| Fan::new(body, t.index(), wanted);
+    let fans = parallel::map(body.triangles.len(), fan);
     let fans = fans.values();
     // One pass in order: threads that add to the same vertices would have to wait for each other.
     let mut sums = vec![[0.0_f32; 3]; body.positions.len()];
     for (triangle, fan) in body.triangles.iter().zip(fans) {
+        if fan.angles == [0.0; 3] {
+            continue;
+        }
         for (&v, &weight) in triangle.iter().zip(&fan.angles) {
             let sum = &mut sums[v as usize];
             for (x, n) in sum.iter_mut().zip(fan.normal) {
@@ -148,7 +153,7 @@ fn split_creases(
     }
     around.sort_unstable();
     let limit = crease_angle.cos() as f32;
-    let mut corners = body.triangles.clone();
+    let mut corners = body.triangles.to_vec();
     for at_vertex in around.chunk_by(|a, b| a.0 == b.0) {
         for &(_, t, k) in at_vertex {
             let own = fans[t as usize].normal;
@@ -167,21 +172,29 @@ fn split_creases(
     corners
 }
 
-/// The normal and the angles of a triangle, zero if it has no area.
+/// The normal and the angles of a triangle at wanted vertices, zero if it has no area.
 struct Fan {
     normal: Normal,
     angles: [f32; 3],
 }
 
 impl Fan {
-    fn new(body: &Body<'_>, t: usize) -> Self {
+    const NONE: Fan = Fan { normal: [0.0; 3], angles: [0.0; 3] };
+
+    fn new(body: &Body<'_>, t: usize, wanted: &[bool]) -> Self {
+        let wanted = body.triangles[t].map(|v| wanted[v as usize]);
+        if wanted == [false; 3] {
+            return Fan::NONE;
+        }
         let [a, b, c] = body.points(t);
         let sides = [b - a, c - b, a - c].map(direction);
         let normal = direction((b - a).cross(c - a));
         if normal == DVec3::ZERO {
-            return Fan { normal: [0.0; 3], angles: [0.0; 3] };
+            return Fan::NONE;
         }
-        let angle = |k: usize| angle(-sides[(k + 2) % 3].dot(sides[k]) as f32);
+        let angle = |k: usize| {
+            if wanted[k] { angle(-sides[(k + 2) % 3].dot(sides[k]) as f32) } else { 0.0 }
+        };
         Fan { normal: normal.as_vec3().to_array(), angles: [angle(0), angle(1), angle(2)] }
     }
 }

@@ -8,14 +8,16 @@
 //! open = 1 − strength · c · mean of max(0, cos ∠(v, n) − bias) (1 − |v|²/r²)₊
 //! ```
 //!
-//! with v from the pixel's point to the other's. The discs of neighboring pixels are turned against
-//! each other, and a mean over 4×4 pixels at the same depth then takes out the grain.
+//! with v from the pixel's point to the other's. This is done for blocks of 2×2 pixels. The discs of
+//! neighboring blocks are turned against each other, and for each pixel a mean over the 4×4 blocks around
+//! it that are at its depth then takes out the grain.
 //!
-//! - Input: the depth of each pixel.
-//! - Cost: 16 pixels looked up per pixel, in parallel; four bytes a pixel, twice.
+//! - Input: what is seen at each sample.
+//! - Cost: 16 blocks looked up per block, and 16 per pixel, in parallel; four bytes a pixel and eight a block.
 //! - Reference: McGuire, Osman, Bukowski, Hennessy, "The Alchemy screen-space ambient obscurance
 //!   algorithm", HPG 2011.
-//! - Departs from it: weights fall to zero at the radius instead of with the square of the distance.
+//! - Departs from it: weights fall to zero at the radius instead of with the square of the distance; a
+//!   quarter of the places, since hollows are much larger than pixels.
 
 use std::f64::consts::TAU;
 
@@ -26,9 +28,9 @@ use crate::{
     raster::{Kind, Layer, seen},
 };
 
-/// Pixels looked at for each.
+/// Blocks looked at for each.
 const TAPS: usize = 16;
-/// Patterns of them: one for each pixel of a 4×4 block.
+/// Patterns of them: one for each of 4×4 blocks.
 const PATTERNS: usize = 16;
 /// The golden angle spreads points evenly over a disc.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
@@ -36,6 +38,8 @@ const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 const BIAS: f64 = 0.12;
 /// What half a sky taken away counts as full occlusion.
 const CONTRAST: f64 = 2.8;
+/// Pixels along a side of a block.
+const SIDE: usize = 2;
 
 /// How much of the sky each pixel sees, from 0 to 1.
 pub(crate) struct Openness {
@@ -59,31 +63,28 @@ impl Openness {
         strength: f64,
         radius: f64,
     ) -> Self {
-        let row = camera.size[0] as usize;
-        let [width, height] = camera.size.map(|side| side as usize / samples);
-        let nearest = |i: usize| {
-            let (x, y) = (i % width * samples, i / width * samples);
-            let block = (0..samples * samples).map(|k| (y + k / samples) * row + x + k % samples);
-            block.map(|place| keys[place]).min().and_then(seen)
+        let pixels = View::new(camera, samples);
+        let blocks = View::new(camera, SIDE * samples);
+        let depth_of = |key: Option<u64>| {
+            key.and_then(seen).map_or(f32::INFINITY, |(_, order)| camera.depth(order) as f32)
         };
-        let view = View { camera, samples: samples as f64, width, height };
-        let depth = |v: VertexId| {
-            nearest(v.index()).map_or(f32::INFINITY, |(_, order)| camera.depth(order) as f32)
-        };
-        let depths = parallel::map(width * height, depth).into_values();
+        let depth = |v: VertexId| depth_of(blocks.nearest(keys, v.index()));
+        let depths = parallel::map(blocks.width * blocks.height, depth).into_values();
         let taps = Taps::new();
         let open = |v: VertexId| {
             let i = v.index();
-            let normal = nearest(i).and_then(|(id, _)| normal(layers, id));
-            let Some(normal) = normal else { return 1.0 };
-            (1.0 - strength * CONTRAST * taps.taken(&view, &depths, i, normal, radius)).max(0.0)
+            let nearest = blocks.nearest(keys, i).and_then(seen);
+            let Some(normal) = nearest.and_then(|(id, _)| normal(layers, id)) else { return 1.0 };
+            (1.0 - strength * CONTRAST * taps.taken(&blocks, &depths, i, normal, radius)).max(0.0)
                 as f32
         };
-        let grainy = parallel::map(width * height, open).into_values();
-        let values = parallel::map(width * height, |v: VertexId| {
-            mean_around(&view, &depths, &grainy, v.index(), 0.1 * radius as f32)
+        let grainy = parallel::map(blocks.width * blocks.height, open).into_values();
+        let values = parallel::map(pixels.width * pixels.height, |v: VertexId| {
+            let place = [v.index() % pixels.width, v.index() / pixels.width];
+            let depth = depth_of(pixels.nearest(keys, v.index()));
+            mean_around(&blocks, &depths, &grainy, place, depth, 0.1 * radius as f32)
         });
-        Openness { width, values: values.into_values() }
+        Openness { width: pixels.width, values: values.into_values() }
     }
 
     #[inline]
@@ -92,20 +93,35 @@ impl Openness {
     }
 }
 
-/// Pixels and where they are in space.
+/// Squares of samples and where they are in space.
 struct View<'c> {
     camera: &'c Camera,
-    samples: f64,
+    /// Samples along a side of a square.
+    samples: usize,
     width: usize,
     height: usize,
 }
 
-impl View<'_> {
-    /// The point seen in a pixel, relative to the eye.
+impl<'c> View<'c> {
+    fn new(camera: &'c Camera, samples: usize) -> Self {
+        let [width, height] = camera.size.map(|side| (side as usize).div_ceil(samples));
+        View { camera, samples, width, height }
+    }
+
+    /// The key of what is nearest in square `i`.
+    fn nearest(&self, keys: &[u64], i: usize) -> Option<u64> {
+        let [row, rows] = self.camera.size.map(|side| side as usize);
+        let (x, y) = (i % self.width * self.samples, i / self.width * self.samples);
+        let columns = x..(x + self.samples).min(row);
+        let lines = y..(y + self.samples).min(rows);
+        lines.flat_map(|y| &keys[y * row + columns.start..y * row + columns.end]).min().copied()
+    }
+
+    /// The point seen in a square, relative to the eye.
     fn point(&self, x: usize, y: usize, depth: f64) -> DVec3 {
-        let [w, h] = [self.width, self.height].map(|side| 0.5 * side as f64);
-        let place = [x as f64 + 0.5 - w, h - y as f64 - 0.5].map(|x| x * self.samples);
-        self.camera.point(place, depth)
+        let [w, h] = self.camera.size.map(|side| 0.5 * f64::from(side));
+        let middle = |k: usize| (k as f64 + 0.5) * self.samples as f64;
+        self.camera.point([middle(x) - w, h - middle(y)], depth)
     }
 }
 
@@ -133,11 +149,11 @@ impl Taps {
         Taps((0..PATTERNS).map(|pattern| std::array::from_fn(|i| tap(pattern, i))).collect())
     }
 
-    /// The share of its sky that others take from pixel `i`.
+    /// The share of its sky that others take from block `i`.
     fn taken(&self, view: &View<'_>, depths: &[f32], i: usize, normal: DVec3, radius: f64) -> f64 {
         let (x, y) = (i % view.width, i / view.width);
         let p = view.point(x, y, f64::from(depths[i]));
-        let reach = (radius * view.camera.scale(-p.z) / view.samples).clamp(2.0, 300.0);
+        let reach = (radius * view.camera.scale(-p.z) / view.samples as f64).clamp(1.0, 150.0);
         // The order of a 4×4 ordered dither: neighbors get patterns that differ much.
         let pattern = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5][y % 4 * 4 + x % 4];
         let mut taken = 0.0;
@@ -161,22 +177,38 @@ impl Taps {
     }
 }
 
-/// The mean over the 4×4 pixels around one, at about its depth.
-fn mean_around(view: &View<'_>, depths: &[f32], values: &[f32], i: usize, reach: f32) -> f32 {
-    let depth = depths[i];
+/// The mean over the 4×4 blocks around a pixel that are at about its depth; if none is, the value of
+/// the one that is nearest to it.
+fn mean_around(
+    blocks: &View<'_>,
+    depths: &[f32],
+    values: &[f32],
+    [x, y]: [usize; 2],
+    depth: f32,
+    reach: f32,
+) -> f32 {
     if depth.is_infinite() {
         return 1.0;
     }
-    let (x, y) = (i % view.width, i / view.width);
+    // Two blocks on either side of the pixel, which lies in the left or the right half of its own.
+    let around = |k: usize, count: usize| {
+        let middle = k.div_ceil(SIDE);
+        middle.saturating_sub(2)..(middle + 2).min(count)
+    };
     let (mut sum, mut count) = (0.0, 0.0);
-    for ny in y.saturating_sub(2)..(y + 2).min(view.height) {
-        for nx in x.saturating_sub(2)..(x + 2).min(view.width) {
-            let j = ny * view.width + nx;
-            if (depths[j] - depth).abs() <= reach {
+    let mut closest = (f32::INFINITY, 1.0);
+    for by in around(y, blocks.height) {
+        for bx in around(x, blocks.width) {
+            let j = by * blocks.width + bx;
+            let apart = (depths[j] - depth).abs();
+            if apart <= reach {
                 sum += values[j];
                 count += 1.0;
             }
+            if apart < closest.0 {
+                closest = (apart, values[j]);
+            }
         }
     }
-    if count > 0.0 { sum / count } else { values[i] }
+    if count > 0.0 { sum / count } else { closest.1 }
 }

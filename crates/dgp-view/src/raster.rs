@@ -234,6 +234,36 @@ pub(crate) fn visibility(
     Ok(keys)
 }
 
+/// Which vertices of each body belong to triangles that are seen at some sample.
+pub(crate) fn seen_vertices(
+    bodies: &[Body<'_>],
+    layers: &[Layer<'_>],
+    keys: &[u64],
+) -> Vec<Vec<bool>> {
+    // Threads may mark a vertex at the same time: it is marked in any case.
+    let none =
+        |body: &Body<'_>| (0..body.positions.len()).map(|_| AtomicBool::new(false)).collect();
+    let marks: Vec<Vec<AtomicBool>> = bodies.iter().map(none).collect();
+    parallel::map_blocks(keys.len(), BLOCK, |range| {
+        let mut last = None;
+        for &key in &keys[range] {
+            let Some((id, _)) = seen(key) else { continue };
+            if last == Some(id) {
+                continue;
+            }
+            last = Some(id);
+            let layer = &layers[layers.partition_point(|layer| layer.base <= id) - 1];
+            if let Kind::Triangles { index, body, .. } = &layer.kind {
+                for v in body.triangles[(id - layer.base) as usize] {
+                    marks[*index][v as usize].store(true, Ordering::Relaxed);
+                }
+            }
+        }
+    });
+    let plain = |marks: Vec<AtomicBool>| marks.into_iter().map(AtomicBool::into_inner).collect();
+    marks.into_iter().map(plain).collect()
+}
+
 /// The primitives that touch each band, by blocks of primitives.
 fn bin(
     layer: &Layer<'_>,

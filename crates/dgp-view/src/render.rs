@@ -17,7 +17,7 @@ use crate::{
     light::Rig,
     lines::capsules,
     occlusion::Openness,
-    raster::{Kind, Layer, triangle_layer, visibility},
+    raster::{Kind, Layer, seen_vertices, triangle_layer, visibility},
     shade::{Studio, Surface},
     shadow::Shadow,
 };
@@ -158,10 +158,11 @@ impl<'a> PanelView<'a> {
             .bodies
             .iter()
             .zip(self.inks)
+            .zip(seen_vertices(&self.bodies, &layers, &keys))
             .enumerate()
-            .map(|(i, (body, ink))| {
+            .map(|(i, ((body, ink), seen))| {
                 let marks = self.panel.models.get(i).map(marked_faces).unwrap_or_default();
-                Surface::new(body, ink, marks)
+                Surface::new(body, ink, marks, &seen)
             })
             .collect();
         progress.report(0.6)?;

@@ -24,14 +24,20 @@ pub(crate) struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    pub(crate) fn new(body: &'a Body<'a>, ink: Ink<'a>, marks: Vec<(&'a FaceSet, Linear)>) -> Self {
+    /// `seen` tells the vertices of triangles that are seen somewhere.
+    pub(crate) fn new(
+        body: &'a Body<'a>,
+        ink: Ink<'a>,
+        marks: Vec<(&'a FaceSet, Linear)>,
+        seen: &[bool],
+    ) -> Self {
         let style = body.style;
         let back = match style.back_faces {
             BackFaces::Colored(color) => Some(linear(color)),
             BackFaces::LikeFront | BackFaces::Hidden => None,
         };
         let line = linear(style.wireframe.color);
-        Surface { normals: Normals::new(body), body, ink, marks, back, line }
+        Surface { normals: Normals::new(body, seen), body, ink, marks, back, line }
     }
 
     /// Whether one sample shows all there is in a pixel it covers.

@@ -4,7 +4,7 @@
 //! heights above the ground. What is low casts a dark shadow, what is high a faint one; then the
 //! picture is blurred and laid on the plane through the lowest point.
 
-use dgp_mesh::{Cancelled, DVec3, Progress, parallel};
+use dgp_mesh::{Cancelled, DVec3, Progress, VertexId, parallel};
 
 use crate::{
     Fill, Projection,
@@ -51,13 +51,8 @@ impl Shadow {
         let lens = Lens::new([SIDE as u32; 2], MARGIN, Projection::Orthographic);
         let mut flat = Vec::new();
         for body in bodies.iter().filter(|body| body.style.fill == Fill::Shaded) {
-            let mut positions = body.positions.clone();
-            parallel::for_each_chunk(&mut positions, parallel::BLOCK, |_, positions| {
-                for p in positions {
-                    *p = turned(*p);
-                }
-            });
-            flat.push(Body::plain(positions, body.triangles.clone()));
+            let place = |v: VertexId| turned(body.positions[v.index()]);
+            flat.push(body.moved(parallel::map(body.positions.len(), place).into_values()));
         }
         let extents = flat.iter().map(|body| body.extent(&lens));
         let extent = extents.fold(Extent::EMPTY, Extent::union);
@@ -73,7 +68,11 @@ impl Shadow {
         }
         let below = Camera::fit(&extent, &lens);
         for body in &mut flat {
-            body.positions.iter_mut().for_each(|p| *p -= below.eye);
+            parallel::for_each_chunk(&mut body.positions, parallel::BLOCK, |_, positions| {
+                for p in positions {
+                    *p -= below.eye;
+                }
+            });
         }
         let mut layers = Vec::new();
         let mut base = 0;

@@ -54,3 +54,12 @@ impl Write for Reader {
         Ok(())
     }
 }
+
+#[test]
+fn what_is_no_number_and_what_is_cancelled_is_seen() {
+    assert!(Outcome::of(&vec![Some(1.0), Some(f64::NAN)]).has_nan);
+    assert!(Outcome::of(&dgp_mesh::DVec3::new(0.0, f64::NAN, 0.0)).has_nan);
+    assert!(!Outcome::of(&"NaN in a text, and 1.5").has_nan);
+    assert!(Outcome::of(&dgp_mesh::Error::from(dgp_mesh::Cancelled)).is_cancelled);
+    assert_ne!(Outcome::of(&0.0).digest, Outcome::of(&-0.0).digest);
+}

@@ -132,7 +132,8 @@ impl Row {
             state => messages.push(format!("state `{state}`: write open, partial or done")),
         }
         for (name, empty) in [
-            ("functions", self.functions.is_empty()),
+            // The command is no library: what is reachable there are its commands.
+            ("functions", self.functions.is_empty() && self.krate != "dgp-cli"),
             ("tests", self.tests.is_empty()),
             ("doc", self.doc.is_empty()),
         ] {
