@@ -230,8 +230,9 @@ impl Error {
     /// The same error where row `i` of what was factored is row `rows[i]` of what the caller knows.
     pub(crate) fn renumbered(mut self, rows: &[u32]) -> Self {
         use Error::{ConstantNullSpace, NotPositiveDefinite, Singular};
-        if let NotPositiveDefinite { row, .. } | ConstantNullSpace { row, .. } | Singular { row, .. } =
-            &mut self
+        if let NotPositiveDefinite { row, .. }
+        | ConstantNullSpace { row, .. }
+        | Singular { row, .. } = &mut self
         {
             *row = rows[*row] as usize;
         }

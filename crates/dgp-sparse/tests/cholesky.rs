@@ -20,9 +20,8 @@ fn factored(matrix: &SparseMatrix) -> Result<Cholesky, Error> {
 /// By elimination with pivots, as in the textbook.
 fn dense_solve(matrix: &SparseMatrix, rhs: &[f64]) -> Vec<f64> {
     let n = rhs.len();
-    let mut rows: Vec<Vec<f64>> = (0..n)
-        .map(|i| (0..n).map(|j| matrix.get(i, j)).chain([rhs[i]]).collect())
-        .collect();
+    let mut rows: Vec<Vec<f64>> =
+        (0..n).map(|i| (0..n).map(|j| matrix.get(i, j)).chain([rhs[i]]).collect()).collect();
     for k in 0..n {
         let pivot = (k..n).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs())).unwrap();
         rows.swap(k, pivot);
@@ -115,7 +114,8 @@ fn new_values_reuse_the_analysis() {
     let rhs = vec![1.0; 225];
     assert_eq!(cholesky.solve(&rhs), factored(&second).unwrap().solve(&rhs));
 
-    let mut other = grid(15, 15).triplets().map(|(i, j, x)| (i as u32, j as u32, x)).collect::<Vec<_>>();
+    let mut other =
+        grid(15, 15).triplets().map(|(i, j, x)| (i as u32, j as u32, x)).collect::<Vec<_>>();
     other.extend([(3, 200, -1.0), (200, 3, -1.0)]);
     let other = SparseMatrix::from_triplets(225, 225, &other).unwrap();
     let error = cholesky.refactor(&other, Progress::NONE).unwrap_err();

@@ -139,8 +139,7 @@ impl Cholesky {
         let lower = SparseColMatRef::new(pattern, &self.lower);
         // One thread: on blocks of this size more of them lose.
         let params: Spec<LltParams, f64> = default();
-        let size =
-            factorize_supernodal_numeric_llt_scratch::<u32, f64>(blocks, Par::Seq, params);
+        let size = factorize_supernodal_numeric_llt_scratch::<u32, f64>(blocks, Par::Seq, params);
         let mut memory = MemBuffer::new(size);
         let factored = factorize_supernodal_numeric_llt(
             &mut self.factor,

@@ -51,7 +51,9 @@ impl SymbolicCholesky {
     ) -> Result<SymbolicCholesky, Error> {
         matrix.check_symmetric()?;
         // A diagonal entry that is not stored is a zero that cannot be positive.
-        if let Some(row) = (0..matrix.rows()).find(|&i| matrix.column(i).0.binary_search(&(i as u32)).is_err()) {
+        if let Some(row) =
+            (0..matrix.rows()).find(|&i| matrix.column(i).0.binary_search(&(i as u32)).is_err())
+        {
             return Err(Error::NotPositiveDefinite { row, pivot: 0.0, diagonal: 0.0 });
         }
         let graph = Graph::of(matrix);
@@ -65,8 +67,7 @@ impl SymbolicCholesky {
         }
         let (lower_starts, lower_rows, sources) = lower_triangle(matrix, &tree);
         let blocks = blocks(&graph, &tree)?;
-        let tallest =
-            blocks.nnz_per_super().iter().map(|&rows| rows as usize).max().unwrap_or(0);
+        let tallest = blocks.nnz_per_super().iter().map(|&rows| rows as usize).max().unwrap_or(0);
         progress.report(1.0)?;
         Ok(SymbolicCholesky {
             starts: matrix.starts().to_vec(),
@@ -134,9 +135,8 @@ impl SymbolicCholesky {
         }
         Error::check_length("the matrix (rows)", matrix.rows(), self.rows())?;
         Error::check_length("the matrix (columns)", matrix.columns(), self.rows())?;
-        let analyzed = |j: usize| {
-            &self.indices[self.starts[j] as usize..self.starts[j + 1] as usize]
-        };
+        let analyzed =
+            |j: usize| &self.indices[self.starts[j] as usize..self.starts[j + 1] as usize];
         let column = (0..self.rows()).find(|&j| analyzed(j) != matrix.column(j).0);
         Err(Error::OtherPattern { column: column.unwrap_or(0) })
     }

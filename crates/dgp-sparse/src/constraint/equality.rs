@@ -110,7 +110,8 @@ impl EqualitySystem {
         multipliers.iter_mut().zip(targets).for_each(|(value, target)| *value -= target);
         multipliers.extend(self.raised.iter().map(|&row| x[row as usize]));
         self.schur.solve(&mut multipliers);
-        for (column, multiplier) in self.inverse_rows.chunks_exact(x.len().max(1)).zip(&multipliers) {
+        for (column, multiplier) in self.inverse_rows.chunks_exact(x.len().max(1)).zip(&multipliers)
+        {
             x.iter_mut().zip(column).for_each(|(x, value)| *x -= multiplier * value);
         }
         // Rounding of the dense system shows where equations nearly depend on each other.

@@ -90,12 +90,7 @@ impl FixedSystem {
 
     /// The same for `count` systems, whose right-hand sides stand one after the other, and whose fixed
     /// values and solutions do likewise.
-    pub fn solve_many(
-        &self,
-        rhs: &[f64],
-        values: &[f64],
-        count: usize,
-    ) -> Result<Vec<f64>, Error> {
+    pub fn solve_many(&self, rhs: &[f64], values: &[f64], count: usize) -> Result<Vec<f64>, Error> {
         let (n, fixed) = (self.rows(), self.fixed.len());
         Error::check_length("the right-hand side", rhs.len(), n * count)?;
         Error::check_length("the fixed values", values.len(), fixed * count)?;
@@ -110,7 +105,8 @@ impl FixedSystem {
             let given: Vec<f64> = self.sorted.iter().map(|&row| x[row as usize]).collect();
             let known = self.coupling.transpose_product(&given);
             let rhs = &rhs[k * n..(k + 1) * n];
-            inner.extend(self.free.iter().zip(known).map(|(&row, known)| rhs[row as usize] - known));
+            inner
+                .extend(self.free.iter().zip(known).map(|(&row, known)| rhs[row as usize] - known));
         }
         self.cholesky.solve_in_place(&mut inner)?;
         for k in 0..count {

@@ -229,8 +229,7 @@ mod tests {
     fn the_laplacian_of_a_triangle_with_a_doubled_edge_and_a_loop() {
         let edges = [(0, 1, 1.0), (1, 2, 2.0), (2, 0, 3.0), (1, 0, 4.0), (1, 1, 100.0)];
         let l = SparseMatrix::from_edges(4, &edges).unwrap();
-        let dense: Vec<Vec<f64>> =
-            (0..4).map(|i| (0..4).map(|j| l.get(i, j)).collect()).collect();
+        let dense: Vec<Vec<f64>> = (0..4).map(|i| (0..4).map(|j| l.get(i, j)).collect()).collect();
         assert_eq!(
             dense,
             [[8.0, -5.0, -3.0, 0.0], [-5.0, 7.0, -2.0, 0.0], [-3.0, -2.0, 5.0, 0.0], [0.0; 4]]

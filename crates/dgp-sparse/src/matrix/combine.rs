@@ -263,7 +263,8 @@ mod tests {
     fn asymmetry_is_named() {
         let symmetric = SparseMatrix::from_edges(3, &[(0, 1, 1.0), (1, 2, 0.1)]).unwrap();
         assert_eq!(symmetric.check_symmetric(), Ok(()));
-        let a = SparseMatrix::from_triplets(3, 3, &[(0, 1, 1.0), (2, 1, 1.0), (1, 2, 1.0)]).unwrap();
+        let a =
+            SparseMatrix::from_triplets(3, 3, &[(0, 1, 1.0), (2, 1, 1.0), (1, 2, 1.0)]).unwrap();
         let error = a.check_symmetric().unwrap_err();
         assert!(matches!(error, Error::NotSymmetric { row: 0, column: 1, .. }), "{error}");
         let a = SparseMatrix::from_triplets(3, 3, &[(0, 0, 1.0), (2, 0, 1.0)]).unwrap();

@@ -174,7 +174,8 @@ impl MinimumDegree {
     fn compact(&mut self) {
         let mut lists = Vec::with_capacity(self.lists.len());
         for i in 0..self.start.len() {
-            let alive = if self.elements[i] == ELEMENT { self.mark[i] != 0 } else { self.size[i] > 0 };
+            let alive =
+                if self.elements[i] == ELEMENT { self.mark[i] != 0 } else { self.size[i] > 0 };
             if alive {
                 let start = self.start[i] as usize;
                 self.start[i] = lists.len() as u32;

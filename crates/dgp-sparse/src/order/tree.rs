@@ -30,7 +30,12 @@ pub(crate) struct Tree {
 impl Tree {
     /// The tree of `graph` eliminated in `order`, which is changed to an equivalent one.
     pub(crate) fn new(graph: &Graph, order: &[u32]) -> Tree {
-        let mut tree = Tree { order: order.to_vec(), place: Vec::new(), parent: Vec::new(), counts: Vec::new() };
+        let mut tree = Tree {
+            order: order.to_vec(),
+            place: Vec::new(),
+            parent: Vec::new(),
+            counts: Vec::new(),
+        };
         tree.place = places(&tree.order);
         tree.parent = parents(graph, &tree);
         tree.renumber(|_| 0);

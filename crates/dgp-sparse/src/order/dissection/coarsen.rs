@@ -68,7 +68,8 @@ pub(super) fn coarsen<'a>(
     progress: Progress<'_>,
 ) -> Result<Vec<Level<'a>>, Error> {
     let finest = Borrowed::Finest(graph);
-    let level = Level { graph: finest, weights: Vec::new(), edge_weights: Vec::new(), cluster: None };
+    let level =
+        Level { graph: finest, weights: Vec::new(), edge_weights: Vec::new(), cluster: None };
     let mut levels = vec![level];
     loop {
         let fine = &levels[levels.len() - 1];
@@ -155,7 +156,9 @@ fn neighbor_cluster(
     let fitting = others.filter(|&(_, other)| {
         weight_of.get(other as usize).is_some_and(|other| other + weight <= most)
     });
-    fitting.max_by_key(|&(bond, other)| (bond, u64::MAX - weight_of[other as usize])).map(|best| best.1)
+    fitting
+        .max_by_key(|&(bond, other)| (bond, u64::MAX - weight_of[other as usize]))
+        .map(|best| best.1)
 }
 
 /// The graph whose vertices are the clusters.

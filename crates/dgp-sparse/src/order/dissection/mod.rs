@@ -96,7 +96,9 @@ fn subgraph(graph: &Graph, vertices: &[u32]) -> Graph {
 /// two sides of it.
 fn eliminate(graph: &Graph, label: &[u32], regions: &Regions) -> Vec<u32> {
     let (starts, members) = regions.members(label);
-    let of = |region: u32| &members[starts[region as usize] as usize..starts[region as usize + 1] as usize];
+    let of = |region: u32| {
+        &members[starts[region as usize] as usize..starts[region as usize + 1] as usize]
+    };
     let sequence = regions.bottom_up();
     // Few large chunks, since each needs a map from vertices to their place in a block.
     let mut pieces: Vec<(u32, Vec<u32>)> =

@@ -144,7 +144,9 @@ fn lowest(level: &Level<'_>, label: &[u32], regions: &Regions, part: u32, v: usi
             [true, true] => break,
             [true, false] => parts[0],
             [false, true] => parts[1],
-            [false, false] => parts[usize::from(regions.weight(parts[1]) < regions.weight(parts[0]))],
+            [false, false] => {
+                parts[usize::from(regions.weight(parts[1]) < regions.weight(parts[0]))]
+            }
         };
     }
     region
