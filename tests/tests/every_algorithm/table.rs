@@ -8,7 +8,9 @@ use dgp_laplace::smooth::{
 use dgp_mesh::{
     CrowdedEdges, EdgeList, EdgeMap, Editor, FaceSet, FlatFaces, IndexedFaceSet, KeepComponents,
     Mesh, PolygonSoup, Progress, RepairOptions, Tolerance, TriangulationMethod, VertexId,
-    VertexSet, defects,
+    VertexSet,
+    curvature::{self, Neighborhood},
+    defects,
     graph::{Until, astar, breadth_first, dijkstra},
     measure::{self, NormalWeight, VertexArea},
     reorder, repair, repair_faces, shapes, strict_mesh, topology, triangulate, triangulate_faces,
@@ -43,7 +45,7 @@ impl Algorithm {
 
 /// All there are. To add one, add a line: a name, and a closure from faces or a mesh to an outcome.
 pub(crate) fn algorithms() -> Vec<Algorithm> {
-    [building(), measures(), searches(), edits(), smoothing(), pictures_and_files()]
+    [building(), measures(), curvatures(), searches(), edits(), smoothing(), pictures_and_files()]
         .into_iter()
         .flatten()
         .collect()
@@ -163,6 +165,28 @@ fn measures() -> Vec<Algorithm> {
         mesh("vertex_normals by Max", |m, _| {
             Outcome::of(&measure::vertex_normals(m, NormalWeight::Max))
         }),
+    ]
+}
+
+fn curvatures() -> Vec<Algorithm> {
+    vec![
+        mesh("angle_defects", |m, _| Outcome::of(&curvature::angle_defects(m))),
+        mesh("gaussian_curvatures", |m, _| {
+            Outcome::of(&curvature::gaussian_curvatures(m, VertexArea::MixedVoronoi))
+        }),
+        mesh("mean_curvatures", |m, _| {
+            Outcome::of(&curvature::mean_curvatures(m, VertexArea::Barycentric))
+        }),
+        mesh("mean_curvature_vectors", |m, _| {
+            Outcome::of(&curvature::mean_curvature_vectors(m, VertexArea::MixedVoronoi))
+        }),
+        mesh("principal_curvatures", |m, _| Outcome::of(&curvature::principal_curvatures(m))),
+        mesh("normal_cycle_curvatures", |m, p| {
+            let length = measure::edge_length_range(m).map_or(1.0, |range| range.mean);
+            let ball = Neighborhood::Ball(2.0 * length);
+            Outcome::of(&curvature::normal_cycle_curvatures(m, ball, p))
+        }),
+        mesh("curvature_report", |m, _| Outcome::of(&curvature::curvature_report(m))),
     ]
 }
 
