@@ -1,5 +1,7 @@
 //! Numbers as bytes.
 
+use dgp_mesh::parallel;
+
 use crate::{
     Encoding,
     error::{Cause, Fault},
@@ -60,7 +62,12 @@ macro_rules! put {
 
 impl ByteWriter {
     pub(crate) fn new(encoding: Encoding) -> Self {
-        ByteWriter { bytes: Vec::new(), big: encoding == Encoding::BigEndian }
+        ByteWriter::onto(Vec::new(), encoding)
+    }
+
+    /// Adds to `bytes`.
+    pub(crate) fn onto(bytes: Vec<u8>, encoding: Encoding) -> Self {
+        ByteWriter { bytes, big: encoding == Encoding::BigEndian }
     }
 
     put!(i8, u8, i16, u16, i32, u32, f32, f64);
@@ -70,4 +77,27 @@ impl ByteWriter {
 #[inline]
 pub(crate) fn is_f32(x: f64) -> bool {
     f64::from(x as f32).to_bits() == x.to_bits()
+}
+
+/// How many of the numbers of all values do not fit single precision bit for bit.
+pub(crate) fn rounded<T: Sync, const N: usize>(
+    values: &[T],
+    numbers: impl Fn(&T) -> [f64; N] + Sync + Send,
+) -> usize {
+    let blocks = parallel::map_blocks(values.len(), parallel::BLOCK, |range| {
+        let numbers = values[range].iter().flat_map(&numbers);
+        numbers.map(|x| usize::from(!is_f32(x))).sum::<usize>()
+    });
+    blocks.into_iter().sum()
+}
+
+/// Whether single precision holds the numbers of all values bit for bit.
+pub(crate) fn are_f32<T: Sync, const N: usize>(
+    values: &[T],
+    numbers: impl Fn(&T) -> [f64; N] + Sync + Send,
+) -> bool {
+    let blocks = parallel::map_blocks(values.len(), parallel::BLOCK, |range| {
+        values[range].iter().all(|value| numbers(value).into_iter().all(is_f32))
+    });
+    !blocks.contains(&false)
 }

@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf};
 
-use dgp_mesh::{Cancelled, VertexId};
+use dgp_mesh::{Cancelled, FaceList, VertexId};
 
 use crate::{Encoding, Format};
 
@@ -22,6 +22,13 @@ pub enum Error {
         /// With which file.
         path: PathBuf,
         /// Why it failed.
+        source: io::Error,
+    },
+
+    /// The writer that the bytes of a file went to took no more of them.
+    #[error("cannot write: {source}")]
+    Sink {
+        /// Why not.
         source: io::Error,
     },
 
@@ -166,7 +173,7 @@ pub enum Cause {
         expected: usize,
     },
     /// A name for an element that is not there.
-    #[error("there is no {what} {index}: the file has {count} of them, counted from {first}")]
+    #[error("there is no {what} {index}: {}", Range { what, count: *count, first: *first })]
     IndexOutOfRange {
         /// What is named.
         what: &'static str,
@@ -176,6 +183,29 @@ pub enum Cause {
         count: usize,
         /// The number of the first one in this format.
         first: u8,
+    },
+    /// Index 0 in a format that counts from 1.
+    #[error(
+        "{what} 0 is named, but {format} counts from 1 (and -1 is the last one before this line); \
+         where a program wrote indices from 0, add 1 to all of them"
+    )]
+    IndexZero {
+        /// What is named.
+        what: &'static str,
+        /// The format.
+        format: Format,
+    },
+    /// An index that counts backwards to before the first element.
+    #[error(
+        "{what} {index} is named, counted backwards from this line, but only {before} come before it"
+    )]
+    BeforeFirst {
+        /// What is named.
+        what: &'static str,
+        /// Its number as the file has it.
+        index: i64,
+        /// How many of them come before.
+        before: usize,
     },
     /// More elements than the file has bytes for.
     #[error(
@@ -211,6 +241,23 @@ pub enum Cause {
         /// What it is.
         what: String,
     },
+}
+
+/// What there is, for messages about what there is not.
+struct Range<'a> {
+    what: &'a str,
+    count: usize,
+    first: u8,
+}
+
+impl fmt::Display for Range<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Range { what, count, first } = *self;
+        match count {
+            0 => write!(f, "the file has no {what} at all"),
+            _ => write!(f, "the file has {count} of them, counted from {first}"),
+        }
+    }
 }
 
 /// A cause with its place, before the line is counted.
@@ -273,6 +320,12 @@ impl From<dgp_mesh::Error> for Stop {
     fn from(error: dgp_mesh::Error) -> Self {
         Stop::Other(error.into())
     }
+}
+
+/// An error if there are more corners of faces than a list can count.
+pub(crate) fn countable(kind: &'static str, count: usize) -> Result<(), dgp_mesh::Error> {
+    let limit = FaceList::MAX_CORNERS;
+    if count > limit { Err(dgp_mesh::Error::TooMany { kind, count, limit }) } else { Ok(()) }
 }
 
 /// "in face 7" for messages.

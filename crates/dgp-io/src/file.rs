@@ -8,10 +8,15 @@ use std::{
     sync::atomic::{AtomicU32, Ordering},
 };
 
+use dgp_mesh::Progress;
+
 use crate::Error;
 
+/// How much is read between two reports.
+const STEP: u64 = 1 << 22;
+
 /// The bytes of a regular file.
-pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
+pub(crate) fn load(path: &Path, progress: Progress<'_>) -> Result<Vec<u8>, Error> {
     let refused = |source| Error::File { action: "read", path: path.to_owned(), source };
     let metadata = fs::metadata(path).map_err(refused)?;
     refuse_special(path, &metadata)?;
@@ -20,13 +25,19 @@ pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
     let size =
         usize::try_from(metadata.len()).map_err(|_| refused(io::ErrorKind::FileTooLarge.into()))?;
     bytes.try_reserve_exact(size).map_err(|_| refused(io::ErrorKind::OutOfMemory.into()))?;
-    file.read_to_end(&mut bytes).map_err(refused)?;
+    // The size is only what it was a moment ago: what counts is where the file ends.
+    while Read::by_ref(&mut file).take(STEP).read_to_end(&mut bytes).map_err(refused)? > 0 {
+        progress.report((bytes.len() as f64 / size.max(1) as f64).min(1.0))?;
+    }
     Ok(bytes)
 }
 
-/// Writes `chunks` one after the other to a new file that takes the place of `path` when all of it
-/// is on the disk. If that fails, `path` is as before and nothing is left beside it.
-pub(crate) fn store(path: &Path, chunks: &[impl AsRef<[u8]>]) -> Result<(), Error> {
+/// Makes a new file of what `fill` writes that takes the place of `path` when all of it is on the
+/// disk. If that fails or is cancelled, `path` is as before and nothing is left beside it.
+pub(crate) fn store<T>(
+    path: &Path,
+    fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<T, Error>,
+) -> Result<T, Error> {
     // A link is followed, or the file would take the place of the link.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let refused = |source| Error::File { action: "write", path: path.to_owned(), source };
@@ -38,14 +49,16 @@ pub(crate) fn store(path: &Path, chunks: &[impl AsRef<[u8]>]) -> Result<(), Erro
         }
     }
     let mut draft = Draft::new(&target).map_err(refused)?;
-    for chunk in chunks {
-        draft.file.write_all(chunk.as_ref()).map_err(refused)?;
-    }
+    let filled = fill(&mut draft.file).map_err(|error| match error {
+        Error::Sink { source } => refused(source),
+        other => other,
+    })?;
     if let Some(metadata) = old {
         draft.file.set_permissions(metadata.permissions()).map_err(refused)?;
     }
     draft.file.sync_data().map_err(refused)?;
-    draft.publish(&target).map_err(refused)
+    draft.publish(&target).map_err(refused)?;
+    Ok(filled)
 }
 
 fn refuse_special(path: &Path, metadata: &Metadata) -> Result<(), Error> {

@@ -6,6 +6,7 @@
 //! | read bytes from elsewhere | [`read_bytes`], [`read_bytes_with`] |
 //! | write a file | [`write()`] |
 //! | write to memory | [`write_bytes`] |
+//! | write to a pipe | [`write_to`] |
 //! | write a picture or a report | [`write_whole`] |
 //!
 //! - Everything a file holds is in the [`Document`]; what was skipped is in [`ReadReport::warnings`].
@@ -33,15 +34,17 @@ mod file;
 mod format;
 mod obj;
 mod off;
+mod output;
 mod ply;
 mod print;
+mod pulse;
 mod report;
 mod stl;
 mod text;
 mod weld;
 mod xyz;
 
-use std::path::Path;
+use std::{io, path::Path};
 
 use dgp_mesh::Progress;
 
@@ -53,6 +56,7 @@ pub use format::{Encoding, Format};
 pub use report::{Loss, ReadOptions, ReadReport, Warning, WriteOptions, WriteReport};
 
 use error::{Fault, Stop};
+use output::Output;
 use report::{Losses, Oddities};
 
 /// The contents of the file at `path`, whose extension tells its format.
@@ -71,9 +75,8 @@ pub fn read_with(
         Some(format) => format,
         None => Format::from_path(path)?,
     };
-    let bytes = file::load(path)?;
-    progress.report(0.05)?;
-    let result = read_bytes_with(&bytes, format, progress.part(0.05, 1.0));
+    let bytes = file::load(path, progress.part(0.0, 0.2))?;
+    let result = read_bytes_with(&bytes, format, progress.part(0.2, 1.0));
     result.map_err(|error| in_file(path, error))
 }
 
@@ -127,16 +130,17 @@ pub fn write(
         Some(format) => format,
         None => Format::from_path(path)?,
     };
-    let (chunks, report) = chunks(document, format, options, progress.part(0.0, 0.9))
-        .map_err(|error| in_file(path, error))?;
-    progress.report(0.9)?;
-    file::store(path, &chunks)?;
-    Ok(report)
+    // Before there is a file.
+    let checked = check(document, format, options);
+    let written = checked.and_then(|_| {
+        file::store(path, |file| write_to(file, document, format, options, progress))
+    });
+    written.map_err(|error| in_file(path, error))
 }
 
 /// Writes `bytes` to the file at `path`, such as a picture or a report, whole or not at all.
 pub fn write_whole(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Error> {
-    file::store(path.as_ref(), &[bytes])
+    file::store(path.as_ref(), |file| Output::new(file).put(bytes))
 }
 
 /// The bytes of a file that holds `document`.
@@ -146,37 +150,51 @@ pub fn write_bytes(
     options: &WriteOptions,
     progress: Progress<'_>,
 ) -> Result<(Vec<u8>, WriteReport), Error> {
-    let (chunks, report) = chunks(document, format, options, progress)?;
-    Ok((chunks.concat(), report))
+    let mut bytes = Vec::new();
+    let report = write_to(&mut bytes, document, format, options, progress)?;
+    Ok((bytes, report))
 }
 
-/// The pieces of a file that holds `document`.
-fn chunks(
+/// Writes a file that holds `document` to a pipe, a socket, an archive.
+///
+/// It is made piece by piece: a few megabytes of it are in memory at a time. When this fails or is
+/// cancelled the writer has got the beginning of it.
+pub fn write_to(
+    writer: &mut (dyn io::Write + Send),
     document: &Document,
     format: Format,
     options: &WriteOptions,
     progress: Progress<'_>,
-) -> Result<(Vec<Vec<u8>>, WriteReport), Error> {
+) -> Result<WriteReport, Error> {
+    let encoding = check(document, format, options)?;
+    let mut losses = Losses::default();
+    let mut output = Output::new(writer);
+    match format {
+        Format::Obj => obj::write(document, &mut output, &mut losses, progress),
+        Format::Off => off::write(document, encoding, &mut output, &mut losses, progress),
+        Format::Ply => ply::write(document, encoding, &mut output, &mut losses, progress),
+        Format::Stl => stl::write(document, encoding, &mut output, &mut losses, progress),
+        Format::Xyz | Format::Pwn => {
+            xyz::write(document, format, &mut output, &mut losses, progress)
+        }
+    }?;
+    if output.bytes() == 0 {
+        // A file of 0 bytes is a failed copy; nothing in good order is an empty line.
+        output.put(b"\n")?;
+    }
+    let bytes = output.bytes();
+    writer.flush().map_err(|source| Error::Sink { source })?;
+    Ok(WriteReport { format, encoding, bytes, losses: losses.0 })
+}
+
+/// The encoding to write in, if the document and the options are in order.
+fn check(document: &Document, format: Format, options: &WriteOptions) -> Result<Encoding, Error> {
     let encoding = options.encoding.unwrap_or(format.default_encoding());
     if !format.has_encoding(encoding) {
         return Err(Error::UnsupportedEncoding { format, encoding });
     }
     document.validate()?;
-    let mut losses = Losses::default();
-    let mut chunks = match format {
-        Format::Obj => obj::write(document, &mut losses, progress),
-        Format::Off => off::write(document, encoding, &mut losses, progress),
-        Format::Ply => ply::write(document, encoding, &mut losses, progress),
-        Format::Stl => stl::write(document, encoding, &mut losses, progress),
-        Format::Xyz | Format::Pwn => xyz::write(document, format, &mut losses, progress),
-    }?;
-    let mut bytes = chunks.iter().map(Vec::len).sum();
-    if bytes == 0 {
-        // A file of 0 bytes is a failed copy; nothing in good order is an empty line.
-        chunks = vec![b"\n".to_vec()];
-        bytes = 1;
-    }
-    Ok((chunks, WriteReport { format, encoding, bytes, losses: losses.0 }))
+    Ok(encoding)
 }
 
 /// The error with the path of its file, unless it has it or needs none.

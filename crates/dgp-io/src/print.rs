@@ -1,14 +1,13 @@
 //! Numbers as text: as short as they can be and still read back bit for bit.
 
-use dgp_mesh::{Progress, parallel};
+use std::{mem, ops::Range};
 
-use crate::error::Error;
+use dgp_mesh::Progress;
 
-/// Elements whose text a thread prints at a time.
-const BLOCK: usize = 1 << 13;
+use crate::{Error, output::Output};
 
-/// After how many elements the length of the text is guessed.
-const SAMPLE: usize = 64;
+/// Elements whose text a thread prints at a time: some hundred kilobytes.
+const BLOCK: usize = 1 << 12;
 
 /// The decimal digits of the numbers below 100.
 const PAIRS: [[u8; 2]; 100] = {
@@ -65,25 +64,30 @@ impl Printer {
     /// A whole number.
     #[inline]
     pub(crate) fn integer(&mut self, x: i64) {
-        let mut digits = [0_u8; 20];
-        let mut start = digits.len();
-        let mut rest = x.unsigned_abs();
-        while rest >= 100 {
-            start -= 2;
-            digits[start..start + 2].copy_from_slice(&PAIRS[(rest % 100) as usize]);
+        match u32::try_from(x) {
+            Ok(small) if small < 100_000_000 => self.small_integer(small),
+            _ => self.bytes.extend_from_slice(x.to_string().as_bytes()),
+        }
+    }
+
+    /// A whole number of at most eight digits, as nearly all are.
+    #[inline]
+    fn small_integer(&mut self, x: u32) {
+        let len = x.checked_ilog10().unwrap_or(0) as usize + 1;
+        let mut digits = [0_u8; 8];
+        let (mut end, mut rest) = (len, x);
+        while end >= 2 {
+            digits[end - 2..end].copy_from_slice(&PAIRS[(rest % 100) as usize]);
             rest /= 100;
+            end -= 2;
         }
-        let pair = PAIRS[rest as usize];
-        if rest >= 10 {
-            start -= 1;
-            digits[start] = pair[1];
+        if end == 1 {
+            digits[0] = b'0' + rest as u8;
         }
-        start -= 1;
-        digits[start] = pair[usize::from(rest < 10)];
-        if x < 0 {
-            self.bytes.push(b'-');
-        }
-        self.bytes.extend_from_slice(&digits[start..]);
+        // Eight bytes are copied faster than a number of bytes that is not known here.
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(&digits);
+        self.bytes.truncate(start + len);
     }
 
     /// Numbers with blanks between them.
@@ -106,27 +110,21 @@ fn odd(x: f64) -> &'static str {
     }
 }
 
-/// The text of `len` elements in chunks, each printed by `print`, in parallel.
+/// Writes the text of `len` elements, each printed by `print`, in parallel.
 pub(crate) fn print_all(
+    output: &mut Output<'_>,
     len: usize,
     print: impl Fn(&mut Printer, usize) + Sync + Send,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
-    let chunks = parallel::map_blocks(len, BLOCK, |range| {
-        let end = range.end;
-        let mut printer = Printer::new();
-        for (done, i) in range.clone().enumerate() {
+) -> Result<(), Error> {
+    let text = |range: Range<usize>, room: &mut Vec<u8>| {
+        let mut printer = Printer { bytes: mem::take(room), ..Printer::new() };
+        for i in range {
             print(&mut printer, i);
-            if done == SAMPLE {
-                // The rest is about as long; growing step by step would copy it several times.
-                let mean = printer.bytes.len() / (SAMPLE + 1) + 1;
-                printer.bytes.reserve(mean * (range.len() - SAMPLE));
-            }
         }
-        progress.report(end as f64 / len as f64)?;
-        Ok(printer.bytes)
-    });
-    chunks.into_iter().collect()
+        *room = printer.bytes;
+    };
+    output.blocks(len, BLOCK, text, progress)
 }
 
 /// A name on one line: what would end the line becomes a blank.
@@ -149,7 +147,8 @@ mod tests {
         let numbers = [1.0, -0.0, 0.1, 1e300, f64::NAN, f64::NEG_INFINITY];
         assert_eq!(printed(|p| p.numbers(numbers)), "1 -0 0.1 1e+300 nan -inf");
         assert_eq!(printed(|p| p.f32(0.1)), "0.1");
-        for x in [0, 9, 10, 99, 100, 101, 999, 1000, 65_535, -7, -42, i64::MAX, i64::MIN] {
+        let whole = [0, 9, 10, 99, 100, 101, 999, 1000, 65_535, 99_999_999, 100_000_000, -7, -42];
+        for x in whole.into_iter().chain([i64::MAX, i64::MIN]) {
             assert_eq!(printed(|p| p.integer(x)), x.to_string());
         }
     }

@@ -12,6 +12,7 @@ use dgp_mesh::{COLOR, Color, DVec3, FaceList, IndexedFaceSet, NORMAL, Normal, Pr
 use crate::{
     Contents, Document, Encoding, Error, Format,
     error::{Cause, Fault, Stop},
+    output::Output,
     print::{Printer, print_all},
     report::{Losses, Oddities},
     text::{Cursor, Text, decoded, map_blocks},
@@ -167,9 +168,10 @@ fn ends_row(cursor: &mut Cursor<'_>) -> bool {
 pub(crate) fn write(
     document: &Document,
     format: Format,
+    output: &mut Output<'_>,
     losses: &mut Losses,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
+) -> Result<(), Error> {
     let set = &document.set;
     let normals = set.vertex_attributes.get::<Normal>(NORMAL);
     let exact = |color: &Color| Color::from_rgba8(color.to_rgba8()) == *color && color.0[3] == 1.0;
@@ -210,7 +212,6 @@ pub(crate) fn write(
         }
         printer.byte(b'\n');
     };
-    let mut chunks = vec![head.bytes];
-    chunks.extend(print_all(set.vertex_count(), point, progress)?);
-    Ok(chunks)
+    output.put(&head.bytes)?;
+    print_all(output, set.vertex_count(), point, progress)
 }

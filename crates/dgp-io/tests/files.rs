@@ -1,8 +1,17 @@
 //! Files on the disk: whole or not at all.
 
-use std::{env, fs, ops::ControlFlow, path::PathBuf, process};
+use std::{
+    env, fs,
+    ops::ControlFlow,
+    path::PathBuf,
+    process,
+    sync::atomic::{AtomicUsize, Ordering},
+};
 
-use dgp_io::{Document, Error, Format, ReadOptions, WriteOptions, read, read_with, write};
+use dgp_io::{
+    Document, Encoding, Error, Format, ReadOptions, WriteOptions, read, read_with, write,
+    write_bytes, write_to,
+};
 use dgp_mesh::{DVec3, FaceList, IndexedFaceSet, Progress};
 
 fn triangle() -> Document {
@@ -110,4 +119,106 @@ fn links_stay_links_and_devices_are_refused() {
     let options = ReadOptions { format: Some(Format::Obj) };
     let result = read_with("/dev/null", &options, Progress::NONE);
     assert!(matches!(result, Err(Error::NotAFile { .. })));
+}
+
+/// A sheet of 720,000 triangles, more than any buffer holds.
+fn sheet() -> Document {
+    let mut document = Document::from(&dgp_mesh::shapes::grid(600, 600).unwrap());
+    let thirds: Vec<f64> = (0..document.set.vertex_count()).map(|v| v as f64 / 3.0).collect();
+    document.set.vertex_attributes.insert("heat", thirds);
+    document
+}
+
+/// Counts reports, and stops at the first one beyond `limit`.
+struct Clock {
+    limit: f64,
+    reports: AtomicUsize,
+}
+
+impl Clock {
+    fn new(limit: f64) -> Self {
+        Clock { limit, reports: AtomicUsize::new(0) }
+    }
+
+    fn tick(&self, x: f64) -> ControlFlow<()> {
+        self.reports.fetch_add(1, Ordering::Relaxed);
+        if x > self.limit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+#[test]
+fn large_files_report_often_and_stop_in_the_middle() {
+    let folder = Folder::new("large");
+    let document = sheet();
+    let cases = [
+        ("obj", Encoding::Text),
+        ("ply", Encoding::LittleEndian),
+        ("ply", Encoding::Text),
+        ("stl", Encoding::LittleEndian),
+        ("off", Encoding::BigEndian),
+        ("off", Encoding::Text),
+    ];
+    for (extension, encoding) in cases {
+        let path = folder.0.join("mesh").with_extension(extension);
+        let options = WriteOptions { encoding: Some(encoding), ..WriteOptions::default() };
+        let stops = Clock::new(0.3);
+        let tick = |x: f64| stops.tick(x);
+        let result = write(&path, &document, &options, Progress::new(&tick));
+        assert!(matches!(result, Err(Error::Cancelled(_))), "{extension} {encoding}");
+        assert_eq!(folder.names(), [""; 0], "{extension} {encoding}");
+
+        // A report every four megabytes at least.
+        let runs = Clock::new(2.0);
+        let tick = |x: f64| runs.tick(x);
+        let report = write(&path, &document, &options, Progress::new(&tick)).unwrap();
+        let reports = runs.reports.into_inner();
+        assert!(reports > report.bytes >> 22, "{extension} {encoding}: {reports}");
+        let runs = Clock::new(2.0);
+        let tick = |x: f64| runs.tick(x);
+        let _ = read_with(&path, &ReadOptions::default(), Progress::new(&tick)).unwrap();
+        let reports = runs.reports.into_inner();
+        assert!(reports > 2 * (report.bytes >> 22), "{extension} {encoding}: {reports}");
+        for limit in [0.1, 0.5, 0.7] {
+            let stops = Clock::new(limit);
+            let tick = |x: f64| stops.tick(x);
+            let result = read_with(&path, &ReadOptions::default(), Progress::new(&tick));
+            assert!(matches!(result, Err(Error::Cancelled(_))), "{extension} {encoding} {limit}");
+        }
+        fs::remove_file(&path).unwrap();
+    }
+}
+
+#[test]
+fn a_full_device_is_an_error_and_gets_no_more() {
+    let document = sheet();
+    for format in Format::ALL {
+        let mut device = vec![0_u8; 100_000];
+        let mut full = &mut device[..];
+        let result =
+            write_to(&mut full, &document, format, &WriteOptions::default(), Progress::NONE);
+        assert!(matches!(result, Err(Error::Sink { .. })), "{format}: {result:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_full_device_of_the_system_is_told_as_such() {
+    let mut full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let options = WriteOptions::default();
+    let result = write_to(&mut full, &triangle(), Format::Ply, &options, Progress::NONE);
+    let message = result.unwrap_err().to_string();
+    assert!(message.starts_with("cannot write: No space left on device"), "{message}");
+}
+
+#[test]
+fn what_goes_to_a_pipe_is_what_goes_to_a_file() {
+    let document = sheet();
+    for format in [Format::Ply, Format::Obj] {
+        let mut piped = Vec::new();
+        let options = WriteOptions::default();
+        let report = write_to(&mut piped, &document, format, &options, Progress::NONE).unwrap();
+        let (bytes, same) = write_bytes(&document, format, &options, Progress::NONE).unwrap();
+        assert_eq!((piped.len(), &report), (report.bytes, &same));
+        assert!(piped == bytes);
+    }
 }

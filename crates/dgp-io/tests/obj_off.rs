@@ -85,6 +85,19 @@ fn labels_lines_points_and_tags_come_back() {
     assert_eq!(read_bytes(&bytes, Format::Obj).unwrap(), document);
 }
 
+/// Found by fuzzing: words that were announced and not there were empty, and gone when written.
+#[test]
+fn tags_have_the_words_they_announce() {
+    let short = fault(b"t name 0/0/3 a b\nt name 0/0/3 a b c\n", Format::Obj);
+    let problem = "2 words where the tag announces 3".to_owned();
+    assert_eq!(short, (Place::Line(1), Cause::Header { problem }));
+    let mut document = obj("v 0 0 0\nt name 0/0/1 a\n");
+    document.tags[0].strings = vec![String::new(), "two words".to_owned()];
+    let bytes = written(&document, Format::Obj, Encoding::Text);
+    let strings = &read_bytes(&bytes, Format::Obj).unwrap().tags[0].strings;
+    assert_eq!(strings, &["_", "two_words"]);
+}
+
 #[test]
 fn clouds_have_normals_and_colors_without_faces() {
     let document = obj("vn 0 0 1\nv 0 0 0 1 0 .5\nvn 1 0 0\nv 1 2 3 0 0 1\n");
@@ -104,7 +117,7 @@ fn normals_that_are_not_there_do_not_cost_the_faces() {
     assert!(document.set.vertex_attributes.is_empty());
     assert_eq!(
         report.warnings[0].to_string(),
-        "line 1: corner names a normal that is not there (3 times)"
+        "line 4: corner names a normal that is not there (3 times)"
     );
 }
 
@@ -126,8 +139,8 @@ fn bad_obj_files_are_refused_with_their_line() {
     let cases: [(&[u8], usize, Cause); 8] = [
         (b"", 1, Cause::Empty),
         (b"v 0 0 0\n\nf 1 2 3\n", 3, index(2, 1)),
-        (b"v 0 0 0\nf 0 1 1\n", 2, index(0, 0)),
-        (b"f -1 -2 -3\n", 1, index(-1, 0)),
+        (b"v 0 0 0\nf 0 1 1\n", 2, Cause::IndexZero { what: "vertex", format: Format::Obj }),
+        (b"f -1 -2 -3\n", 1, Cause::BeforeFirst { what: "vertex", index: -1, before: 0 }),
         (b"v 0 0 0\nf 1 1 99999999999\n", 2, index(99_999_999_999, 1)),
         (b"v 0 0\n", 1, Cause::TooFewNumbers { found: 2, expected: 3 }),
         (b"v 0 0 0\nv 1 3.1+e2 0\n", 2, number("3.1+e2")),
@@ -170,7 +183,7 @@ fn attributes_that_corners_name_but_are_not_there_leave_the_geometry() {
         assert!(warned, "{face}: {report:?}");
     }
     let vertex = fault(b"v 0 0 0\nf 0 1 1\n", Format::Obj);
-    let cause = Cause::IndexOutOfRange { what: "vertex", index: 0, count: 0, first: 1 };
+    let cause = Cause::IndexZero { what: "vertex", format: Format::Obj };
     assert_eq!(vertex, (Place::Line(2), cause));
 }
 

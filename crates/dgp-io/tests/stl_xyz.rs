@@ -40,6 +40,23 @@ fn corners_are_welded_by_their_bits() {
     assert_eq!(read_bytes(negative.as_bytes(), Format::Stl).unwrap().set.vertex_count(), 4);
 }
 
+/// Found by fuzzing: text keeps no bits of what is no number, so that vertices became fewer.
+#[test]
+fn what_is_no_number_is_one_vertex_whatever_its_bits() {
+    let (mut bytes, _) = written(&tetrahedron(), Format::Stl, Encoding::LittleEndian);
+    for (at, bits) in [(96, 0x7fc0_0001_u32), (146, 0xffff_ffff)] {
+        bytes[at..at + 4].copy_from_slice(&bits.to_le_bytes());
+    }
+    let document = read_bytes(&bytes, Format::Stl).unwrap();
+    assert_eq!(document.set.vertex_count(), 5);
+    let (text, _) = written(&document, Format::Stl, Encoding::Text);
+    let again = read_bytes(&text, Format::Stl).unwrap();
+    assert_eq!(again.set.faces(), document.set.faces());
+    let signed = String::from_utf8(text).unwrap().replacen("nan", "-nan", 1);
+    let again = read_bytes(signed.as_bytes(), Format::Stl).unwrap();
+    assert_eq!(again.set.faces(), document.set.faces());
+}
+
 #[test]
 fn solids_are_objects() {
     let text = "solid left\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n\

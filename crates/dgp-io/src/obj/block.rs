@@ -5,7 +5,7 @@ use std::ops::Range;
 use dgp_mesh::{DVec2, DVec3, MAX_ELEMENTS};
 
 use crate::{
-    SubdivisionTag,
+    Format, SubdivisionTag,
     error::{Cause, Fault},
     report::Oddities,
     text::{Cursor, Text, decoded, shown},
@@ -32,10 +32,13 @@ pub(super) struct Block {
     /// The byte of each face, counted from the beginning of the block.
     pub(super) face_bytes: Vec<u32>,
     pub(super) labels: Vec<LabelChange>,
-    /// The vertices of lines, and where each line ends in them.
+    /// The vertices of lines, the byte of the statement of each, and where each line ends in them.
     pub(super) line_vertices: References,
+    pub(super) line_bytes: Vec<u32>,
     pub(super) line_ends: Vec<u32>,
+    /// Points, and the byte of the statement of each.
     pub(super) points: References,
+    pub(super) point_bytes: Vec<u32>,
     pub(super) comments: Vec<String>,
     pub(super) material_libraries: Vec<String>,
     pub(super) tags: Vec<SubdivisionTag>,
@@ -81,6 +84,12 @@ impl References {
                 0
             }
         });
+    }
+
+    /// What number `slot` is if it counts backwards: see `relative`.
+    pub(super) fn local(&self, slot: usize) -> Option<i64> {
+        let found = self.relative.binary_search_by_key(&(slot as u32), |&(slot, _)| slot);
+        found.ok().map(|i| self.relative[i].1)
     }
 
     fn pad(&mut self, len: usize) {
@@ -132,7 +141,7 @@ impl Block {
             b"vt" => self.uv(cursor).map_err(|fault| fault.within("texture coordinate"))?,
             b"vn" => self.normal(cursor).map_err(|fault| fault.within("normal"))?,
             word => {
-                self.rare_statement(word, cursor, at)?;
+                self.rare_statement(word, cursor, at, start)?;
                 return Ok(());
             }
         }
@@ -222,6 +231,7 @@ impl Block {
         word: &[u8],
         cursor: &mut Cursor<'_>,
         at: usize,
+        start: usize,
     ) -> Result<(), Fault> {
         let kind = match word {
             b"o" => Some(LabelKind::Object),
@@ -245,6 +255,7 @@ impl Block {
                 while !cursor.ends_line() {
                     let [v, uv, _] = corner(cursor).map_err(|fault| fault.within("line"))?;
                     self.line_vertices.push(v, self.positions.len());
+                    self.line_bytes.push((at - start) as u32);
                     if uv != 0 {
                         self.oddities.add("texture coordinates of a line skipped", at);
                     }
@@ -255,6 +266,7 @@ impl Block {
                 while !cursor.ends_line() {
                     let [v, ..] = corner(cursor).map_err(|fault| fault.within("point"))?;
                     self.points.push(v, self.positions.len());
+                    self.point_bytes.push((at - start) as u32);
                 }
             }
             b"t" => match tag(cursor) {
@@ -301,15 +313,10 @@ pub(super) fn corner(cursor: &mut Cursor<'_>) -> Result<[i64; 3], Fault> {
         return Err(Fault::new(start, Cause::NotAWholeNumber { text }));
     }
     if vertex == Some(0) {
-        return Err(out_of_range(start, 0, 0, 0));
+        let cause = Cause::IndexZero { what: "vertex", format: Format::Obj };
+        return Err(Fault::new(start, cause));
     }
     Ok(numbers)
-}
-
-/// The fault of a corner that names element `index` where there are `count`.
-pub(super) fn out_of_range(at: usize, field: usize, index: i64, count: usize) -> Fault {
-    let what = ["vertex", "texture coordinate", "normal"][field];
-    Fault::new(at, Cause::IndexOutOfRange { what, index, count, first: 1 })
 }
 
 /// `t name integers/floats/strings …`
@@ -327,7 +334,11 @@ fn tag(cursor: &mut Cursor<'_>) -> Result<SubdivisionTag, Fault> {
         let most = cursor.remaining() / 2;
         match given {
             Some(given) if given <= most => *count = given,
-            _ => {
+            Some(given) => {
+                let problem = format!("a tag of {given} values, more than the file has left");
+                return Err(Fault::header(start, problem));
+            }
+            None => {
                 cursor.at = start;
                 let text = shown(cursor.word());
                 return Err(Fault::new(start, Cause::NotAWholeNumber { text }));
@@ -340,8 +351,13 @@ fn tag(cursor: &mut Cursor<'_>) -> Result<SubdivisionTag, Fault> {
     for _ in 0..counts[1] {
         tag.floats.push(cursor.number()?);
     }
-    for _ in 0..counts[2] {
-        tag.strings.push(decoded(cursor.word()));
+    for found in 0..counts[2] {
+        let word = cursor.word();
+        if word.is_empty() {
+            let problem = format!("{found} words where the tag announces {}", counts[2]);
+            return Err(Fault::header(cursor.at, problem));
+        }
+        tag.strings.push(decoded(word));
     }
     Ok(tag)
 }

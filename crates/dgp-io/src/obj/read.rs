@@ -7,10 +7,10 @@ use dgp_mesh::{
     Normal, OBJECT, Progress, SMOOTHING, UV, VertexId,
 };
 
-use super::block::{Block, LabelKind, References, corner, out_of_range};
+use super::block::{Block, LabelKind, References, corner};
 use crate::{
     Contents, Document, Encoding, Format, WEIGHT,
-    error::{Fault, Stop},
+    error::{Cause, Fault, Stop, countable},
     report::Oddities,
     text::{Text, map_blocks},
 };
@@ -27,6 +27,7 @@ pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
 
 fn join(text: Text<'_>, ranges: &[Range<usize>], mut blocks: Vec<Block>) -> Result<Contents, Stop> {
     let mut oddities = Oddities::default();
+    countable("corners", blocks.iter().map(|block| block.corners.numbers.len()).sum())?;
     let corners = resolve(text, ranges, &blocks, 0, &mut oddities)?;
     let corner_uvs = resolve(text, ranges, &blocks, 1, &mut oddities)?;
     let corner_normals = resolve(text, ranges, &blocks, 2, &mut oddities)?;
@@ -34,7 +35,7 @@ fn join(text: Text<'_>, ranges: &[Range<usize>], mut blocks: Vec<Block>) -> Resu
         corners.into_iter().map(|number| VertexId::new(number as usize - 1)).collect();
 
     let mut document = Document::default();
-    (document.polylines, document.points) = lines_and_points(ranges, &blocks)?;
+    (document.polylines, document.points) = lines_and_points(text, ranges, &blocks)?;
     let colors = padded(&mut blocks, |block| &mut block.colors, [1.0; 4]);
     let weights = padded(&mut blocks, |block| &mut block.weights, 1.0);
     let positions = joined(&mut blocks, |block| &mut block.positions);
@@ -134,16 +135,18 @@ fn resolve(
         let part = [&block.corners, &block.corner_uvs, &block.corner_normals][field];
         let (count, bad) = append(part, start, total, &mut all);
         if let Some(bad) = bad {
+            let face = block.face_ends.partition_point(|&end| end as usize <= bad);
+            let at = range.start + block.face_bytes[face] as usize;
             if field == 0 {
-                return Err(named_by(text, range, block, bad, total).into());
+                let nth = bad - if face == 0 { 0 } else { block.face_ends[face - 1] as usize };
+                let statement = Statement { at, end: range.end, element: "face" };
+                let fault = statement.misnaming(text, nth, part.local(bad), start, total);
+                return Err(fault.into());
             }
             // The geometry is whole without it.
             let what = ["", "texture coordinate", "normal"][field];
-            oddities.add_many(
-                format!("corner names a {what} that is not there").into(),
-                count,
-                range.start,
-            );
+            let what = format!("corner names a {what} that is not there");
+            oddities.add_many(what.into(), count, at);
         }
         // The block says nothing about corners that name none.
         all.resize(first + block.corners.numbers.len(), 0);
@@ -183,53 +186,71 @@ fn append(
     (count, bad)
 }
 
-/// The fault of corner `bad` of a block, found in the text once more.
-fn named_by(
-    text: Text<'_>,
-    range: &Range<usize>,
-    block: &Block,
-    bad: usize,
-    count: usize,
-) -> Fault {
-    let face = block.face_ends.partition_point(|&end| end as usize <= bad);
-    let first = if face == 0 { 0 } else { block.face_ends[face - 1] as usize };
-    let at = range.start + block.face_bytes[face] as usize;
-    let mut cursor = text.cursor(at..range.end);
-    cursor.word();
-    let mut index = 0;
-    for _ in first..=bad {
-        cursor.skip_blanks();
-        index = corner(&mut cursor).map_or(0, |numbers| numbers[0]);
+/// A statement that names vertices.
+struct Statement {
+    at: usize,
+    end: usize,
+    /// What it makes.
+    element: &'static str,
+}
+
+impl Statement {
+    /// The fault of the `nth` vertex named, which is not among `total`; `local` is its number in a
+    /// block whose first vertex is number `start`, if it counts backwards.
+    fn misnaming(
+        &self,
+        text: Text<'_>,
+        nth: usize,
+        local: Option<i64>,
+        start: usize,
+        total: usize,
+    ) -> Fault {
+        let mut cursor = text.cursor(self.at..self.end);
+        cursor.word();
+        let mut index = 0;
+        for _ in 0..=nth {
+            cursor.skip_blanks();
+            index = corner(&mut cursor).map_or(0, |numbers| numbers[0]);
+        }
+        let what = "vertex";
+        let cause = match local {
+            // As many come before as the number and its distance from the first make.
+            Some(local) => {
+                let before = (start as i64).saturating_add(local).saturating_sub(index) - 1;
+                Cause::BeforeFirst { what, index, before: usize::try_from(before).unwrap_or(0) }
+            }
+            None => Cause::IndexOutOfRange { what, index, count: total, first: 1 },
+        };
+        Fault::new(self.at, cause).within(self.element)
     }
-    out_of_range(at, 0, index, count).within("face")
 }
 
 fn lines_and_points(
+    text: Text<'_>,
     ranges: &[Range<usize>],
     blocks: &[Block],
 ) -> Result<(Vec<Vec<VertexId>>, Vec<VertexId>), Stop> {
     let (starts, total) = starts(blocks, |block| block.positions.len());
     let (mut lines, mut points) = (Vec::new(), Vec::new());
     for ((block, &start), range) in blocks.iter().zip(&starts).zip(ranges) {
-        let vertices = |part: &References, element| {
+        let vertices = |part: &References, bytes: &[u32], element| {
             let mut numbers = Vec::new();
-            match append(part, start, total, &mut numbers) {
-                (_, None) => {
-                    Ok(numbers.into_iter().map(|n| VertexId::new(n as usize - 1)).collect())
-                }
-                (_, Some(bad)) => {
-                    let index = i64::from(part.numbers[bad]);
-                    Err(out_of_range(range.start, 0, index, total).within(element))
-                }
+            if let (_, Some(bad)) = append(part, start, total, &mut numbers) {
+                let at = range.start + bytes[bad] as usize;
+                let nth = bytes[..bad].iter().rev().take_while(|&&byte| byte == bytes[bad]).count();
+                let statement = Statement { at, end: range.end, element };
+                return Err(statement.misnaming(text, nth, part.local(bad), start, total));
             }
+            Ok(numbers.into_iter().map(|n| VertexId::new(n as usize - 1)).collect())
         };
-        let line_vertices: Vec<VertexId> = vertices(&block.line_vertices, "line")?;
+        let line_vertices: Vec<VertexId> =
+            vertices(&block.line_vertices, &block.line_bytes, "line")?;
         let mut first = 0;
         for &end in &block.line_ends {
             lines.push(line_vertices[first..end as usize].to_vec());
             first = end as usize;
         }
-        points.append(&mut vertices(&block.points, "point")?);
+        points.append(&mut vertices(&block.points, &block.point_bytes, "point")?);
     }
     Ok((lines, points))
 }
@@ -314,6 +335,13 @@ fn label_faces(set: &mut IndexedFaceSet, blocks: &[Block]) {
     ];
     let (starts, face_count) = starts(blocks, |block| block.face_ends.len());
     for (kind, name) in kinds {
+        // Most files have none, and a column of nothing takes as long to make as any other.
+        let changes = |block: &'_ Block| {
+            block.labels.iter().any(|change| change.kind == kind && !change.text.is_empty())
+        };
+        if !blocks.iter().any(changes) {
+            continue;
+        }
         let mut column: Vec<Label> = Vec::new();
         let mut current = Label::default();
         for (block, start) in blocks.iter().zip(&starts) {

@@ -1,12 +1,13 @@
 //! A document as an OBJ file.
 
 use dgp_mesh::{
-    AttributeColumn, COLOR, Color, CornerId, DVec2, FaceId, GROUP, Label, MATERIAL, NORMAL, Normal,
-    OBJECT, Progress, SMOOTHING, UV, VertexId,
+    AttributeColumn, COLOR, Cancelled, Color, CornerId, DVec2, FaceId, GROUP, Label, MATERIAL,
+    NORMAL, Normal, OBJECT, Progress, SMOOTHING, UV, VertexId,
 };
 
 use crate::{
     Document, Error, WEIGHT,
+    output::Output,
     print::{Printer, one_line, print_all},
     report::Losses,
     weld::weld,
@@ -15,17 +16,18 @@ use crate::{
 /// The text of an OBJ file. Texture coordinates and normals are written once each.
 pub(crate) fn write(
     document: &Document,
+    output: &mut Output<'_>,
     losses: &mut Losses,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
+) -> Result<(), Error> {
     let set = &document.set;
-    let uvs = Shared::new(document, UV, losses, |uv: DVec2| [uv.x.to_bits(), uv.y.to_bits(), 0]);
-    let normals = Shared::new(document, NORMAL, losses, |normal: Normal| {
-        normal.0.to_array().map(f64::to_bits)
-    });
+    let uv_bits = |uv: DVec2| [uv.x.to_bits(), uv.y.to_bits(), 0];
+    let normal_bits = |normal: Normal| normal.0.to_array().map(f64::to_bits);
+    let uvs = Shared::new(document, UV, losses, uv_bits, progress.part(0.0, 0.1))?;
+    let normals = Shared::new(document, NORMAL, losses, normal_bits, progress.part(0.1, 0.2))?;
     note_losses(document, losses);
 
-    let mut chunks = vec![head(document)];
+    output.put(&head(document))?;
     let color = set.vertex_attributes.get::<Color>(COLOR);
     let opaque = color.is_none_or(|color| color.values().iter().all(|color| color.0[3] == 1.0));
     let weight = set.vertex_attributes.get::<f64>(WEIGHT).filter(|_| color.is_none());
@@ -45,14 +47,14 @@ pub(crate) fn write(
         }
         printer.byte(b'\n');
     };
-    chunks.extend(print_all(set.vertex_count(), vertex, progress.part(0.0, 0.4))?);
+    print_all(output, set.vertex_count(), vertex, progress.part(0.2, 0.4))?;
     if let Some(uvs) = &uvs {
         let print = |printer: &mut Printer, i: usize| {
             printer.text("vt ");
             printer.numbers(uvs.value(i).to_array());
             printer.byte(b'\n');
         };
-        chunks.extend(print_all(uvs.firsts.len(), print, progress.part(0.4, 0.5))?);
+        print_all(output, uvs.firsts.len(), print, progress.part(0.4, 0.5))?;
     }
     if let Some(normals) = &normals {
         let print = |printer: &mut Printer, i: usize| {
@@ -60,7 +62,7 @@ pub(crate) fn write(
             printer.numbers(normals.value(i).0.to_array());
             printer.byte(b'\n');
         };
-        chunks.extend(print_all(normals.firsts.len(), print, progress.part(0.5, 0.6))?);
+        print_all(output, normals.firsts.len(), print, progress.part(0.5, 0.6))?;
     }
     let labels = Labels::new(document);
     let face = |printer: &mut Printer, i: usize| {
@@ -85,9 +87,8 @@ pub(crate) fn write(
         }
         printer.byte(b'\n');
     };
-    chunks.extend(print_all(set.face_count(), face, progress.part(0.6, 1.0))?);
-    chunks.push(tail(document));
-    Ok(chunks)
+    print_all(output, set.face_count(), face, progress.part(0.6, 1.0))?;
+    output.put(&tail(document))
 }
 
 /// What comes before the vertices.
@@ -121,7 +122,7 @@ fn tail(document: &Document) -> Vec<u8> {
     }
     for tag in &document.tags {
         printer.text("t ");
-        printer.text(&one_line(&tag.name).replace(' ', "_"));
+        printer.text(&one_word(&tag.name));
         for (i, count) in
             [tag.integers.len(), tag.floats.len(), tag.strings.len()].into_iter().enumerate()
         {
@@ -138,11 +139,17 @@ fn tail(document: &Document) -> Vec<u8> {
         }
         for string in &tag.strings {
             printer.byte(b' ');
-            printer.text(&one_line(string).replace(' ', "_"));
+            printer.text(&one_word(string));
         }
         printer.byte(b'\n');
     }
     printer.bytes
+}
+
+/// A name without what would end a word.
+fn one_word(name: &str) -> String {
+    let name: String = name.chars().map(|c| if c <= ' ' { '_' } else { c }).collect();
+    if name.is_empty() { "_".to_owned() } else { name }
 }
 
 fn vertices(printer: &mut Printer, vertices: &[VertexId]) {
@@ -191,7 +198,8 @@ impl<'a, T: dgp_mesh::AttributeValue + Copy> Shared<'a, T> {
         name: &str,
         losses: &mut Losses,
         bits: impl Fn(T) -> [u64; 3],
-    ) -> Option<Self> {
+        progress: Progress<'_>,
+    ) -> Result<Option<Self>, Cancelled> {
         let set = &document.set;
         let on_corners = set.corner_attributes.get::<T>(name).map(AttributeColumn::values);
         let on_vertices = set.vertex_attributes.get::<T>(name).map(AttributeColumn::values);
@@ -202,25 +210,25 @@ impl<'a, T: dgp_mesh::AttributeValue + Copy> Shared<'a, T> {
             losses.add(format!("vertex attribute `{name}` is of another type"), 1);
         }
         let by_corner = on_corners.is_some();
-        let values = on_corners.or(on_vertices)?;
+        let Some(values) = on_corners.or(on_vertices) else { return Ok(None) };
         if by_corner && on_vertices.is_some() {
             losses.add(format!("vertex attribute `{name}`: corners have their own"), 1);
         }
         if set.faces().is_empty() && !by_corner {
             // Without faces the position in the file tells the vertex.
             let numbers: Vec<u32> = (0..values.len() as u32).collect();
-            return Some(Shared { values, firsts: numbers.clone(), numbers, by_corner });
+            return Ok(Some(Shared { values, firsts: numbers.clone(), numbers, by_corner }));
         }
         if !by_corner {
             note_unused(document, name, values, losses);
         }
-        let welded = weld(values.len(), |i| bits(values[i]));
+        let welded = weld(values.len(), |i| bits(values[i]), progress)?;
         let mut shared =
             Shared { values, numbers: welded.numbers, firsts: welded.firsts, by_corner };
         for number in &mut shared.numbers {
             *number += 1;
         }
-        Some(shared)
+        Ok(Some(shared))
     }
 
     fn value(&self, i: usize) -> T {

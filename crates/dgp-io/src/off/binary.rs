@@ -1,15 +1,16 @@
 //! The body of a binary OFF file.
 
-use dgp_mesh::{DVec2, DVec3, MAX_ELEMENTS, Normal, VertexId};
+use dgp_mesh::{DVec2, DVec3, FaceList, MAX_ELEMENTS, Normal, Progress, VertexId};
 
 use super::{
     Kind,
-    read::{Parts, RawColor},
+    parts::{Parts, RawColor},
 };
 use crate::{
     Contents, Encoding,
     binary::ByteReader,
     error::{Cause, Fault, Stop},
+    pulse::Pulse,
     report::Oddities,
 };
 
@@ -20,6 +21,7 @@ pub(super) fn read(
     kind: Kind,
     comments: Vec<String>,
     mut oddities: Oddities,
+    progress: Progress<'_>,
 ) -> Result<Contents, Stop> {
     // The standard says big endian; where that makes no sense, little endian may.
     let tries = [true, false].map(|big| Counts::parse(ByteReader { bytes, at: start, big }, kind));
@@ -36,19 +38,23 @@ pub(super) fn read(
     parts.color_scale.fractions = true;
     parts.face_color_scale.fractions = true;
     let mut reader = counts.reader;
-    for _ in 0..counts.vertices {
+    let pulse = Pulse::new(counts.vertices, progress.part(0.0, 0.4));
+    for _ in (0..counts.vertices).take_while(|&v| pulse.beat(v)) {
         vertex(&mut reader, kind, &mut parts)?;
     }
+    pulse.end()?;
     let colored = faces_end(reader, counts.faces, FaceColors::Counted) == Some(bytes.len());
     let plain = faces_end(reader, counts.faces, FaceColors::None) == Some(bytes.len());
     let colors = if plain && !colored { FaceColors::None } else { FaceColors::Counted };
     if colors == FaceColors::None && counts.faces > 0 {
         oddities.add("faces without the color count of the standard", reader.at);
     }
-    for f in 0..counts.faces {
+    let pulse = Pulse::new(counts.faces, progress.part(0.4, 1.0));
+    for f in (0..counts.faces).take_while(|&f| pulse.beat(f)) {
         face(&mut reader, counts.vertices, colors, &mut parts)
             .map_err(|fault| fault.within_number("face", f))?;
     }
+    pulse.end()?;
     if reader.remaining() > 0 {
         oddities
             .add(format!("{} bytes after the last face skipped", reader.remaining()), reader.at);
@@ -158,7 +164,8 @@ fn face(
 ) -> Result<(), Fault> {
     let at = reader.at;
     let degree = reader.i32()?;
-    let degree = possible(at, "corners", degree, reader.remaining() / 4)?;
+    let room = FaceList::MAX_CORNERS - parts.corners.len();
+    let degree = possible(at, "corners", degree, (reader.remaining() / 4).min(room))?;
     parts.small_faces += usize::from(degree < 3);
     for _ in 0..degree {
         let at = reader.at;

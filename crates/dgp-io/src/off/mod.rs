@@ -8,6 +8,7 @@
 //!   trying what fits the size of the file. `nOFF` other than three-dimensional is refused.
 
 mod binary;
+mod parts;
 mod read;
 mod write;
 

@@ -1,12 +1,15 @@
 //! Writing OFF.
 
+use std::{mem, ops::Range};
+
 use dgp_mesh::{
-    AttributeColumn, COLOR, Color, DVec2, FaceId, NORMAL, Normal, Progress, UV, VertexId,
+    AttributeColumn, COLOR, Color, DVec2, DVec3, FaceId, NORMAL, Normal, Progress, UV, VertexId,
 };
 
 use crate::{
     COLOR_INDEX, Document, Encoding, Error, WEIGHT,
-    binary::{ByteWriter, is_f32},
+    binary::{ByteWriter, rounded},
+    output::Output,
     print::{Printer, print_all},
     report::Losses,
 };
@@ -15,15 +18,16 @@ use crate::{
 pub(crate) fn write(
     document: &Document,
     encoding: Encoding,
+    output: &mut Output<'_>,
     losses: &mut Losses,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
+) -> Result<(), Error> {
     let columns = Columns::new(document);
     columns.note_losses(document, losses);
     if encoding == Encoding::Text {
-        text(document, &columns, progress)
+        text(document, &columns, output, progress)
     } else {
-        Ok(vec![binary(document, &columns, encoding, losses)])
+        binary(document, &columns, encoding, output, losses, progress)
     }
 }
 
@@ -62,6 +66,14 @@ impl<'a> Columns<'a> {
         letters.chain(["OFF"]).collect()
     }
 
+    /// How many numbers single precision does not hold.
+    fn rounded(&self, document: &Document) -> usize {
+        rounded(document.set.positions().values(), DVec3::to_array)
+            + rounded(self.weights.unwrap_or_default(), |&weight| [weight])
+            + rounded(self.normals.unwrap_or_default(), |normal| normal.0.to_array())
+            + rounded(self.uvs.unwrap_or_default(), DVec2::to_array)
+    }
+
     fn note_losses(&self, document: &Document, losses: &mut Losses) {
         let set = &document.set;
         let kept = [
@@ -85,8 +97,9 @@ impl<'a> Columns<'a> {
 fn text(
     document: &Document,
     columns: &Columns<'_>,
+    output: &mut Output<'_>,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
+) -> Result<(), Error> {
     let set = &document.set;
     let mut head = Printer::new();
     head.text(&columns.keyword());
@@ -103,7 +116,7 @@ fn text(
         head.integer(count as i64);
     }
     head.byte(b'\n');
-    let mut chunks = vec![head.bytes];
+    output.put(&head.bytes)?;
 
     let style = columns.colors.map(ColorStyle::of);
     let vertex = |printer: &mut Printer, i: usize| {
@@ -125,7 +138,7 @@ fn text(
         }
         printer.byte(b'\n');
     };
-    chunks.extend(print_all(set.vertex_count(), vertex, progress.part(0.0, 0.5))?);
+    print_all(output, set.vertex_count(), vertex, progress.part(0.0, 0.5))?;
 
     let style = columns.face_colors.map(ColorStyle::of);
     let face = |printer: &mut Printer, i: usize| {
@@ -145,8 +158,7 @@ fn text(
         }
         printer.byte(b'\n');
     };
-    chunks.extend(print_all(set.face_count(), face, progress.part(0.5, 1.0))?);
-    Ok(chunks)
+    print_all(output, set.face_count(), face, progress.part(0.5, 1.0))
 }
 
 /// How the colors of a column are written.
@@ -186,51 +198,70 @@ fn binary(
     document: &Document,
     columns: &Columns<'_>,
     encoding: Encoding,
+    output: &mut Output<'_>,
     losses: &mut Losses,
-) -> Vec<u8> {
+    progress: Progress<'_>,
+) -> Result<(), Error> {
     let set = &document.set;
-    let mut writer = ByteWriter::new(encoding);
-    let mut rounded = 0;
-    let mut number = |writer: &mut ByteWriter, x: f64| {
-        rounded += usize::from(!is_f32(x));
-        writer.f32(x as f32);
-    };
-    writer.bytes.extend_from_slice(columns.keyword().as_bytes());
-    writer.bytes.extend_from_slice(b" BINARY\n");
+    let mut head = ByteWriter::new(encoding);
+    head.bytes.extend_from_slice(columns.keyword().as_bytes());
+    head.bytes.extend_from_slice(b" BINARY\n");
     for count in [set.vertex_count(), set.face_count(), 0] {
-        writer.u32(count as u32);
+        head.u32(count as u32);
     }
-    for (v, position) in set.positions().iter() {
-        let i = v.index();
+    output.put(&head.bytes)?;
+    let vertex = |writer: &mut ByteWriter, i: usize| {
+        let position = set.position(VertexId::new(i)).to_array();
         let weight = columns.weights.map(|weights| weights[i]);
         let normal = columns.normals.map(|normals| normals[i].0.to_array());
-        let numbers = position.to_array().into_iter().chain(weight);
-        numbers.chain(normal.into_iter().flatten()).for_each(|x| number(&mut writer, x));
+        let numbers = position.into_iter().chain(weight);
+        numbers.chain(normal.into_iter().flatten()).for_each(|x| writer.f32(x as f32));
         if let Some(colors) = columns.colors {
             colors[i].0.iter().for_each(|&x| writer.f32(x));
         }
         if let Some(uvs) = columns.uvs {
-            uvs[i].to_array().into_iter().for_each(|x| number(&mut writer, x));
+            uvs[i].to_array().into_iter().for_each(|x| writer.f32(x as f32));
         }
-    }
-    for (f, face) in set.faces().iter() {
+    };
+    binary_rows(output, set.vertex_count(), encoding, vertex, progress.part(0.0, 0.5))?;
+    let face = |writer: &mut ByteWriter, i: usize| {
+        let face = set.faces().face(FaceId::new(i));
         writer.u32(face.len() as u32);
         for v in face {
             writer.u32(v.index() as u32);
         }
         if let Some(colors) = columns.face_colors {
             writer.u32(4);
-            colors[f.index()].0.iter().for_each(|&x| writer.f32(x));
+            colors[i].0.iter().for_each(|&x| writer.f32(x));
         } else if let Some(indices) = columns.face_color_indices
-            && indices[f.index()] >= 0
+            && indices[i] >= 0
         {
             writer.u32(1);
-            writer.i32(indices[f.index()]);
+            writer.i32(indices[i]);
         } else {
             writer.u32(0);
         }
-    }
-    losses.add("numbers rounded to single precision", rounded);
+    };
+    binary_rows(output, set.face_count(), encoding, face, progress.part(0.5, 1.0))?;
+    losses.add("numbers rounded to single precision", columns.rounded(document));
     losses.add("comments have no place in the format", document.comments.len());
-    writer.bytes
+    Ok(())
+}
+
+/// Vertices or faces a thread writes at a time.
+const BLOCK: usize = 1 << 13;
+
+fn binary_rows(
+    output: &mut Output<'_>,
+    len: usize,
+    encoding: Encoding,
+    row: impl Fn(&mut ByteWriter, usize) + Sync + Send,
+    progress: Progress<'_>,
+) -> Result<(), Error> {
+    let rows = |range: Range<usize>, room: &mut Vec<u8>| {
+        let mut writer = ByteWriter::onto(mem::take(room), encoding);
+        range.for_each(|i| row(&mut writer, i));
+        *room = writer.bytes;
+    };
+    output.blocks(len, BLOCK, rows, progress)
 }

@@ -21,7 +21,9 @@
 mod assemble;
 mod header;
 mod number;
+mod property;
 mod read;
+mod rows;
 mod strided;
 mod table;
 mod tristrips;

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use dgp_mesh::VertexId;
+
 /// A type of number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
@@ -77,7 +79,10 @@ impl fmt::Display for Scalar {
 }
 
 /// A Rust type that a [`Scalar`] names.
-pub(super) trait Number: Copy + Send + Sync + 'static {
+pub(super) trait Number: Copy + Default + Send + Sync + 'static {
+    /// How many bytes it takes.
+    const SIZE: usize = size_of::<Self>();
+
     /// The number at the beginning of `bytes`.
     fn read(bytes: &[u8], big: bool) -> Self;
 
@@ -85,6 +90,17 @@ pub(super) trait Number: Copy + Send + Sync + 'static {
 
     /// The same number in this type, if it has it.
     fn from_f64(x: f64) -> Option<Self>;
+
+    /// The vertex of this number, if it is one of `count`.
+    fn vertex(self, count: usize) -> Option<VertexId>;
+}
+
+/// The vertex of this number, if it is one of `count`.
+#[inline]
+pub(super) fn vertex(number: f64, count: usize) -> Option<VertexId> {
+    // Whole numbers survive the way there and back; `fract` would be a call.
+    (number >= 0.0 && number < count as f64 && number as usize as f64 == number)
+        .then(|| VertexId::new(number as usize))
 }
 
 macro_rules! number {
@@ -105,6 +121,12 @@ macro_rules! number {
             fn from_f64(x: f64) -> Option<Self> {
                 let value = x as $type;
                 (value as f64 == x).then_some(value)
+            }
+
+            #[inline]
+            fn vertex(self, count: usize) -> Option<VertexId> {
+                // By way of fractions it would take several times as long.
+                usize::try_from(self).ok().filter(|&i| i < count).map(VertexId::new)
             }
         })*
     };
@@ -127,6 +149,11 @@ impl Number for f32 {
     fn from_f64(x: f64) -> Option<Self> {
         Some(x as f32)
     }
+
+    #[inline]
+    fn vertex(self, count: usize) -> Option<VertexId> {
+        vertex(self.into(), count)
+    }
 }
 
 impl Number for f64 {
@@ -144,6 +171,11 @@ impl Number for f64 {
     #[inline]
     fn from_f64(x: f64) -> Option<Self> {
         Some(x)
+    }
+
+    #[inline]
+    fn vertex(self, count: usize) -> Option<VertexId> {
+        vertex(self, count)
     }
 }
 
@@ -260,6 +292,15 @@ impl Values {
     #[inline]
     pub(super) fn push_bytes(&mut self, bytes: &[u8], big: bool) {
         with_values!(self, vector => vector.push(Number::read(bytes, big)));
+    }
+
+    /// Adds the numbers of which `bytes` are made.
+    #[inline]
+    pub(super) fn extend_bytes(&mut self, bytes: &[u8], big: bool) {
+        fn extend<T: Number>(vector: &mut Vec<T>, bytes: &[u8], big: bool) {
+            vector.extend(bytes.chunks_exact(T::SIZE).map(|number| T::read(number, big)));
+        }
+        with_values!(self, vector => extend(vector, bytes, big));
     }
 
     /// Adds the numbers of a column of the same type.

@@ -25,10 +25,12 @@ pub(crate) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
     let body = if header.encoding == Encoding::Text {
         text_body(bytes, &header, progress.part(0.0, 0.8))?
     } else {
-        binary_body(bytes, &header, &mut oddities)?
+        binary_body(bytes, &header, &mut oddities, progress.part(0.0, 0.5))?
     };
-    progress.report(0.8)?;
-    let mut document = assemble(&header, body, bytes, &mut oddities)?;
+    let left = if header.encoding == Encoding::Text { 0.8 } else { 0.5 };
+    let left = progress.part(left, 1.0);
+    left.report(0.0)?;
+    let mut document = assemble(&header, body, bytes, &mut oddities, left)?;
     document.comments = header.comments;
     document.notes = header.notes;
     Ok(Contents { document, oddities, encoding: header.encoding })
@@ -54,14 +56,17 @@ fn binary_body<'a>(
     bytes: &'a [u8],
     header: &Header,
     oddities: &mut Oddities,
-) -> Result<Body<'a>, Fault> {
+    progress: Progress<'_>,
+) -> Result<Body<'a>, Stop> {
     let big = header.encoding == Encoding::BigEndian;
     let mut at = header.body;
     let mut tables = Vec::new();
     let mut starts = Vec::new();
     for element in &header.elements {
         starts.push(at);
-        let (table, end) = Table::from_bytes(bytes, at, element, big)?;
+        let part = |at: usize| at as f64 / bytes.len() as f64;
+        let progress = progress.part(part(at), 1.0);
+        let (table, end) = Table::from_bytes(bytes, at, element, big, progress)?;
         tables.push(table);
         at = end;
     }
@@ -130,7 +135,7 @@ fn by_lines(
         let Some((part, count)) = part else { return Ok(None) };
         rows += count;
         for (column, later) in all.iter_mut().flatten().zip(part.into_iter().flatten()) {
-            column.append(later);
+            column.append(later)?;
         }
     }
     let total: usize = header.elements.iter().map(|element| element.count).sum();

@@ -1,14 +1,18 @@
 //! The rows of an element.
 
-use dgp_mesh::{DVec3, parallel};
+use std::mem;
+
+use dgp_mesh::{Cancelled, DVec3, FaceList, Progress, parallel};
 
 use super::{
     header::{Element, Property},
     number::{Number, Scalar, Values, with_type},
+    rows::Misnamed,
 };
 use crate::{
     RowId,
-    error::{Cause, Fault},
+    error::{Cause, Fault, Stop, countable},
+    pulse::Pulse,
     text::Cursor,
 };
 
@@ -21,9 +25,11 @@ pub(super) enum Table<'a> {
 
 /// Rows of the same number of bytes.
 pub(super) struct Fixed<'a> {
-    pub(super) rows: &'a [u8],
+    rows: &'a [u8],
+    /// The byte at which they begin in the file.
+    start: usize,
     pub(super) count: usize,
-    pub(super) stride: usize,
+    stride: usize,
     /// Where in a row the values of each property are, and how many there are if it is a list.
     pub(super) places: Vec<(usize, Option<usize>)>,
     pub(super) big: bool,
@@ -52,16 +58,18 @@ impl Column {
         }
     }
 
-    pub(super) fn append(&mut self, later: Column) {
+    pub(super) fn append(&mut self, later: Column) -> Result<(), dgp_mesh::Error> {
         match (self, later) {
             (Column::Scalars(values), Column::Scalars(later)) => values.append(later),
             (Column::Lists(lists), Column::Lists(later)) => {
+                countable("numbers in lists", lists.values.len() + later.values.len())?;
                 let start = lists.values.len() as u32;
                 lists.ends.extend(later.ends.iter().map(|end| start + end));
                 lists.values.append(later.values);
             }
             _ => unreachable!("blocks of an element have columns of the same kinds"),
         }
+        Ok(())
     }
 
     /// Adds what the cursor is at, up to the end of a line or beyond as `number` goes.
@@ -87,7 +95,7 @@ impl Column {
                 let count = number(cursor, Scalar::U32)?;
                 // Each number takes a digit and a blank.
                 let possible = cursor.remaining() / 2;
-                let count = list_length(count, possible, cursor.at, false)?;
+                let count = list_length(count, possible.min(lists.room()), cursor.at, false)?;
                 for _ in 0..count {
                     value(cursor, &mut lists.values)?;
                 }
@@ -127,11 +135,11 @@ impl Column {
                 let count = with_type!(kind, T => T::read(&bytes[*at..], big).to_f64());
                 let start = *at;
                 *at += kind.size();
-                let count = list_length(count, (bytes.len() - *at) / size, start, true)?;
-                for _ in 0..count {
-                    lists.values.push_bytes(&bytes[*at..], big);
-                    *at += size;
-                }
+                let possible = ((bytes.len() - *at) / size).min(lists.room());
+                let count = list_length(count, possible, start, true)?;
+                let end = *at + count * size;
+                lists.values.extend_bytes(&bytes[*at..end], big);
+                *at = end;
                 lists.ends.push(lists.values.len() as u32);
             }
         }
@@ -139,8 +147,16 @@ impl Column {
     }
 }
 
+impl Lists {
+    /// How many more numbers can be counted.
+    fn room(&self) -> usize {
+        FaceList::MAX_CORNERS - self.values.len()
+    }
+}
+
 fn list_length(count: f64, possible: usize, at: usize, binary: bool) -> Result<usize, Fault> {
-    let cause = if count < 0.0 || count.fract() != 0.0 {
+    // Whole numbers survive the way there and back; `fract` would be a call.
+    let cause = if count < 0.0 || count as u64 as f64 != count {
         Cause::Header { problem: format!("a list of {count} numbers") }
     } else if count > possible as f64 {
         let what = "numbers in a list".to_owned();
@@ -158,7 +174,8 @@ impl<'a> Table<'a> {
         at: usize,
         element: &Element,
         big: bool,
-    ) -> Result<(Self, usize), Fault> {
+        progress: Progress<'_>,
+    ) -> Result<(Self, usize), Stop> {
         if let Some(fixed) = Fixed::find(bytes, at, element, big) {
             let end = at + fixed.rows.len();
             return Ok((Table::Fixed(fixed), end));
@@ -167,27 +184,54 @@ impl<'a> Table<'a> {
         let mut columns: Vec<Column> =
             properties.iter().map(|property| Column::new(property, property.scalar)).collect();
         let mut end = at;
-        for row in 0..element.count {
+        let pulse = Pulse::new(element.count, progress);
+        for row in (0..element.count).take_while(|&row| pulse.beat(row)) {
             for (column, property) in columns.iter_mut().zip(properties) {
                 column
                     .push_bytes(bytes, &mut end, property, big)
                     .map_err(|fault| fault.within_number(element.kind(), row))?;
             }
         }
+        pulse.end()?;
         Ok((Table::Columns(columns), end))
     }
 
-    /// The numbers of property `p`, which is no list.
-    pub(super) fn scalars(&self, p: usize, scalar: Scalar) -> Values {
+    /// The numbers of property `p`, which is no list; they are gone afterwards.
+    pub(super) fn take_scalars(
+        &mut self,
+        p: usize,
+        scalar: Scalar,
+        progress: Progress<'_>,
+    ) -> Result<Values, Cancelled> {
         match self {
             Table::Fixed(fixed) => {
-                with_type!(scalar, T => fixed.numbers::<T>(fixed.places[p].0).into())
+                let at = fixed.places[p].0;
+                let pulse = Pulse::new(fixed.count, progress);
+                let values = with_type!(scalar, T => {
+                    Values::from(fixed.map(T::default(), &pulse, |_, row| T::read(&row[at..], fixed.big)))
+                });
+                pulse.end()?;
+                Ok(values)
             }
-            Table::Columns(columns) => match &columns[p] {
-                Column::Scalars(values) => values.clone(),
-                Column::Lists(lists) => lists.values.clone(),
-            },
+            Table::Columns(columns) => {
+                let (Column::Scalars(values) | Column::Lists(Lists { values, .. })) =
+                    &mut columns[p];
+                Ok(mem::replace(values, Values::new(scalar)))
+            }
         }
+    }
+
+    /// The lists of property `p`; they are gone afterwards.
+    pub(super) fn take_lists(&mut self, p: usize, scalar: Scalar) -> Lists {
+        if let Table::Columns(columns) = self
+            && let Column::Lists(lists) = &mut columns[p]
+        {
+            return Lists {
+                ends: mem::take(&mut lists.ends),
+                values: mem::replace(&mut lists.values, Values::new(scalar)),
+            };
+        }
+        self.lists(p, scalar)
     }
 
     /// The lists of property `p`.
@@ -215,22 +259,34 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The vectors of three properties that are no lists.
-    pub(super) fn triples(&self, p: [usize; 3], scalars: [Scalar; 3]) -> Vec<DVec3> {
+    /// The vectors of three properties that are no lists; they are gone afterwards.
+    pub(super) fn triples(
+        &mut self,
+        p: [usize; 3],
+        scalars: [Scalar; 3],
+        progress: Progress<'_>,
+    ) -> Result<Vec<DVec3>, Cancelled> {
         if let Table::Fixed(fixed) = self
             && scalars == [scalars[0]; 3]
         {
             let [x, y, z] = p.map(|p| fixed.places[p].0);
-            return with_type!(scalars[0], T => fixed.map(|row, big| {
-                let number = |at: usize| T::read(&row[at..], big).to_f64();
+            let pulse = Pulse::new(fixed.count, progress);
+            let vectors = with_type!(scalars[0], T => fixed.map(DVec3::ZERO, &pulse, |_, row| {
+                let number = |at: usize| T::read(&row[at..], fixed.big).to_f64();
                 DVec3::new(number(x), number(y), number(z))
             }));
+            pulse.end()?;
+            return Ok(vectors);
         }
-        let columns = [0, 1, 2].map(|k| self.scalars(p[k], scalars[k]));
+        let mut column = |k: usize| self.take_scalars(p[k], scalars[k], progress);
+        let columns = [column(0)?, column(1)?, column(2)?];
         let vector = |v: RowId| DVec3::from_array([0, 1, 2].map(|k| columns[k].get(v.0 as usize)));
-        parallel::map(columns[0].len(), vector).into_values()
+        Ok(parallel::map(columns[0].len(), vector).into_values())
     }
 }
+
+/// Rows decoded in one go: a task that is called for each row takes longer to be called than to run.
+const BATCH: usize = 16;
 
 impl<'a> Fixed<'a> {
     /// The rows of `element`, if all have the lists of the first one's lengths and all are there.
@@ -256,6 +312,10 @@ impl<'a> Fixed<'a> {
                 len = Some(count as usize);
             }
             places.push((at, len));
+            // More numbers than can be counted are refused where lists are read one by one.
+            if len.is_some_and(|len| len.saturating_mul(element.count) > FaceList::MAX_CORNERS) {
+                return None;
+            }
             at = len.unwrap_or(1).checked_mul(property.scalar.size())?.checked_add(at)?;
         }
         let stride = at;
@@ -264,31 +324,58 @@ impl<'a> Fixed<'a> {
         let first = rows.get(..stride)?;
         let count = element.count;
         if !lengths.is_empty() {
-            let same = parallel::map_blocks(count, parallel::BLOCK, |mut range| {
-                range.all(|i| {
-                    let row = &rows[i * stride..(i + 1) * stride];
-                    lengths.iter().all(|&(at, size)| row[at..at + size] == first[at..at + size])
-                })
+            let same = parallel::map_blocks(count, parallel::BLOCK, |range| {
+                let mut rows = rows[range.start * stride..range.end * stride].chunks_exact(stride);
+                match lengths[..] {
+                    // One byte is compared faster than a slice of one.
+                    [(at, 1)] => rows.all(|row| row[at] == first[at]),
+                    _ => rows.all(|row| {
+                        lengths.iter().all(|&(at, size)| row[at..at + size] == first[at..at + size])
+                    }),
+                }
             });
             if same.contains(&false) {
                 return None;
             }
         }
-        Some(Fixed { rows, count, stride, places, big })
+        Some(Fixed { rows, start, count, stride, places, big })
     }
 
-    /// `f` of each row, in parallel.
-    fn map<T: Send>(&self, f: impl Fn(&[u8], bool) -> T + Sync + Send) -> Vec<T> {
-        let (stride, big) = (self.stride, self.big);
-        let value = |v: RowId| {
-            let start = v.0 as usize * stride;
-            f(&self.rows[start..start + stride], big)
+    /// Row `i`.
+    #[inline]
+    pub(super) fn row(&self, i: usize) -> &[u8] {
+        &self.rows[i * self.stride..(i + 1) * self.stride]
+    }
+
+    /// `f` of each row and its number, in parallel; rows that are not wanted any more are `blank`.
+    pub(super) fn map<T: Copy + Send + Sync>(
+        &self,
+        blank: T,
+        pulse: &Pulse<'_>,
+        f: impl Fn(usize, &[u8]) -> T + Sync + Send,
+    ) -> Vec<T> {
+        let batch = |b: RowId| {
+            let mut values = [blank; BATCH];
+            let first = b.0 as usize * BATCH;
+            if pulse.beat(first) {
+                let end = (first + BATCH).min(self.count) * self.stride;
+                let rows = self.rows[first * self.stride..end].chunks_exact(self.stride);
+                for (k, (value, row)) in values.iter_mut().zip(rows).enumerate() {
+                    *value = f(first + k, row);
+                }
+            }
+            values
         };
-        parallel::map(self.count, value).into_values()
+        let batches = parallel::map(self.count.div_ceil(BATCH), batch);
+        let mut values = batches.into_values().into_flattened();
+        values.truncate(self.count);
+        values
     }
 
-    /// The numbers at byte `at` of each row.
-    fn numbers<T: Number>(&self, at: usize) -> Vec<T> {
-        self.map(|row, big| T::read(&row[at..], big))
+    /// The fault of number `k` of list `p` in row `row`.
+    pub(super) fn misnamed(&self, p: usize, scalar: Scalar, row: usize, k: usize) -> Misnamed {
+        let at = row * self.stride + self.places[p].0 + k * scalar.size();
+        let index = with_type!(scalar, T => T::read(&self.rows[at..], self.big).to_f64() as i64);
+        Misnamed { row, byte: self.start + at, index }
     }
 }

@@ -2,10 +2,7 @@
 
 use dgp_mesh::VertexId;
 
-use super::{
-    assemble::{Misnamed, vertex},
-    table::Lists,
-};
+use super::{number::vertex, rows::Misnamed, table::Lists};
 
 /// The triangles of strips in which −1 begins a new strip. Every other triangle of a strip is turned,
 /// so that all have the same side outside; triangles with a repeated corner only join strips.

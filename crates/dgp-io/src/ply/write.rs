@@ -1,31 +1,38 @@
 //! Writing PLY.
 
-use std::ops::Range;
+use std::{mem, ops::Range};
 
 use dgp_mesh::{
-    AttributeColumn, AttributeTable, AttributeValue, COLOR, Color, DVec2, DVec3, FaceId, FaceList,
-    Id, Label, NORMAL, Normal, Progress, UV, VertexId, parallel,
+    AttributeColumn, AttributeTable, AttributeValue, COLOR, Color, DVec2, DVec3, FaceList, Id,
+    Label, NORMAL, Normal, Progress, UV, VertexId,
 };
 
-use super::{assemble::PREFIX, number::Scalar, strided::Strided};
+use super::{
+    number::Scalar,
+    property::{Property, Value, float_type, length_type, list_type},
+    rows::PREFIX,
+    strided::Strided,
+};
 use crate::{
     Document, Encoding, Error, NumberList,
-    binary::{ByteWriter, is_f32},
+    binary::ByteWriter,
+    output::Output,
     print::{Printer, print_all},
     report::Losses,
 };
 
-/// Rows a thread writes at a time.
-const BLOCK: usize = 1 << 14;
+/// Rows a thread writes at a time: with what they are made of they fit the second-level cache.
+const BLOCK: usize = 1 << 12;
 
 /// A PLY file. Positions, normals and texture coordinates are `float` where that is exact, colors
 /// `uchar` where that is.
 pub(crate) fn write(
     document: &Document,
     encoding: Encoding,
+    output: &mut Output<'_>,
     losses: &mut Losses,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
+) -> Result<(), Error> {
     let set = &document.set;
     let mut vertex = Rows::new("vertex", set.vertex_count());
     vertex.triple(["x", "y", "z"], set.positions().values(), |p| *p);
@@ -60,16 +67,16 @@ pub(crate) fn write(
     }
     losses.add_without_elements(document);
 
-    let mut chunks = vec![header(document, encoding, &elements)];
+    output.put(&header(document, encoding, &elements))?;
     let total: usize = elements.iter().map(|rows| rows.count).sum();
     let mut done = 0;
     for rows in &elements {
         let fraction = |count: usize| count as f64 / total.max(1) as f64;
         let progress = progress.part(fraction(done), fraction(done + rows.count));
         done += rows.count;
-        chunks.extend(rows.write(encoding, progress)?);
+        rows.write(encoding, output, progress)?;
     }
-    Ok(chunks)
+    Ok(())
 }
 
 fn header(document: &Document, encoding: Encoding, elements: &[Rows<'_>]) -> Vec<u8> {
@@ -111,62 +118,6 @@ struct Rows<'a> {
     properties: Vec<Property<'a>>,
 }
 
-/// A number of each row, or a list of them.
-struct Property<'a> {
-    name: String,
-    scalar: Scalar,
-    /// Whether text shows the numbers in double precision, whatever the type.
-    wide: bool,
-    value: Value<'a>,
-}
-
-type Lookup<'a, T> = Box<dyn Fn(usize) -> T + Send + Sync + 'a>;
-
-/// Writes a number of each of some rows at its place in them.
-type Fill<'a> = Box<dyn Fn(&mut Strided<'_>, Range<usize>) + Send + Sync + 'a>;
-
-enum Value<'a> {
-    Number(Lookup<'a, f64>, Fill<'a>),
-    /// The vertices of faces.
-    Corners(Scalar, &'a FaceList),
-    List(Scalar, Lookup<'a, &'a [f64]>),
-    /// Texture coordinates of the corners of faces.
-    Uvs(Scalar, &'a FaceList, &'a [DVec2]),
-}
-
-impl Property<'_> {
-    /// How many bytes it takes in each row, if in all the same.
-    fn size(&self) -> Option<usize> {
-        match &self.value {
-            Value::Number(..) => Some(self.scalar.size()),
-            Value::Corners(kind, faces) => {
-                faces.uniform_degree().map(|degree| kind.size() + degree * self.scalar.size())
-            }
-            Value::List(..) | Value::Uvs(..) => None,
-        }
-    }
-
-    /// The type of the length of a list.
-    fn list(&self) -> Option<Scalar> {
-        match self.value {
-            Value::Number(..) => None,
-            Value::Corners(kind, _) | Value::List(kind, _) | Value::Uvs(kind, ..) => Some(kind),
-        }
-    }
-}
-
-/// The type that holds the length of the longest list.
-fn length_type(longest: usize) -> Scalar {
-    if longest <= 255 { Scalar::U8 } else { Scalar::U32 }
-}
-
-/// The smallest type of fractions that holds all numbers bit for bit.
-fn float_type<'a>(len: usize, numbers: impl Fn(usize) -> f64 + Sync + Send + 'a) -> Scalar {
-    let blocks =
-        parallel::map_blocks(len, parallel::BLOCK, |mut range| range.all(|i| is_f32(numbers(i))));
-    if blocks.contains(&false) { Scalar::F64 } else { Scalar::F32 }
-}
-
 impl<'a> Rows<'a> {
     fn new(name: &'a str, count: usize) -> Self {
         Rows { name, count, properties: Vec::new() }
@@ -192,7 +143,7 @@ impl<'a> Rows<'a> {
         values: &'a [T],
         vector: impl Fn(&T) -> DVec3 + Copy + Send + Sync + 'a,
     ) {
-        let scalar = float_type(3 * values.len(), |i| vector(&values[i / 3])[i % 3]);
+        let scalar = float_type(values, |value| vector(value).to_array());
         for (k, name) in names.into_iter().enumerate() {
             self.number(name, scalar, move |i| vector(&values[i])[k]);
             self.widen();
@@ -214,7 +165,7 @@ impl<'a> Rows<'a> {
 
     fn corner_uvs(&mut self, faces: &'a FaceList, uvs: &'a [DVec2]) {
         let longest = faces.iter().map(|(_, face)| 2 * face.len()).max().unwrap_or(0);
-        let scalar = float_type(2 * uvs.len(), |i| uvs[i / 2][i % 2]);
+        let scalar = float_type(uvs, DVec2::to_array);
         let value = Value::Uvs(length_type(longest), faces, uvs);
         self.properties.push(Property { name: "texcoord".to_owned(), scalar, wide: true, value });
     }
@@ -232,7 +183,7 @@ impl<'a> Rows<'a> {
         }
         let uvs = table.get::<DVec2>(UV).map(AttributeColumn::values);
         if let Some(uvs) = uvs.filter(|_| I::KIND == VertexId::KIND) {
-            let scalar = float_type(2 * uvs.len(), |i| uvs[i / 2][i % 2]);
+            let scalar = float_type(uvs, DVec2::to_array);
             for (k, name) in ["s", "t"].into_iter().enumerate() {
                 self.number(name, scalar, move |i| uvs[i][k]);
                 self.widen();
@@ -352,7 +303,12 @@ impl<'a> Rows<'a> {
         false
     }
 
-    fn write(&self, encoding: Encoding, progress: Progress<'_>) -> Result<Vec<Vec<u8>>, Error> {
+    fn write(
+        &self,
+        encoding: Encoding,
+        output: &mut Output<'_>,
+        progress: Progress<'_>,
+    ) -> Result<(), Error> {
         if encoding == Encoding::Text {
             let row = |printer: &mut Printer, i: usize| {
                 for (k, property) in self.properties.iter().enumerate() {
@@ -361,29 +317,27 @@ impl<'a> Rows<'a> {
                 }
                 printer.byte(b'\n');
             };
-            return print_all(self.count, row, progress);
+            return print_all(output, self.count, row, progress);
         }
         if self.properties.is_empty() {
-            return Ok(Vec::new());
+            return Ok(());
         }
-        let fixed = self.row_size();
-        let chunks = parallel::map_blocks(self.count, BLOCK, |range| {
-            let mut writer = ByteWriter::new(encoding);
-            let end = range.end;
-            if let Some(size) = fixed {
-                let bytes = self.fixed_rows(range, size, encoding == Encoding::BigEndian);
-                progress.report(end as f64 / self.count as f64)?;
-                return Ok(bytes);
+        let size = self.row_size();
+        let rows = |range: Range<usize>, room: &mut Vec<u8>| {
+            if let Some(size) = size {
+                room.resize(range.len() * size, 0);
+                self.fill_rows(room, range, size, encoding == Encoding::BigEndian);
+                return;
             }
+            let mut writer = ByteWriter::onto(mem::take(room), encoding);
             for i in range {
                 for property in &self.properties {
                     property.put(&mut writer, i);
                 }
             }
-            progress.report(end as f64 / self.count as f64)?;
-            Ok(writer.bytes)
-        });
-        chunks.into_iter().collect()
+            *room = writer.bytes;
+        };
+        output.blocks(self.count, BLOCK, rows, progress)
     }
 }
 
@@ -394,20 +348,13 @@ impl Rows<'_> {
         self.properties.iter().map(Property::size).sum()
     }
 
-    /// Rows of `size` bytes each, property by property.
-    fn fixed_rows(&self, range: Range<usize>, size: usize, big: bool) -> Vec<u8> {
-        let mut bytes = vec![0; range.len() * size];
+    /// Fills rows of `size` bytes each, property by property.
+    fn fill_rows(&self, bytes: &mut [u8], range: Range<usize>, size: usize, big: bool) {
         let mut at = 0;
         for property in &self.properties {
-            let mut rows = Strided { bytes: &mut bytes, at, size, big };
-            match &property.value {
-                Value::Number(_, fill) => fill(&mut rows, range.clone()),
-                Value::Corners(kind, faces) => rows.corners(*kind, faces, range.clone()),
-                Value::List(..) | Value::Uvs(..) => unreachable!("lists have no size of their own"),
-            }
+            property.fill(&mut Strided { bytes, at, size, big }, range.clone());
             at += property.size().expect("all properties have a size");
         }
-        bytes
     }
 }
 
@@ -416,105 +363,4 @@ fn column<'a, I: Id, T: AttributeValue>(
     name: &str,
 ) -> Option<&'a [T]> {
     table.get::<T>(name).map(AttributeColumn::values)
-}
-
-/// The smallest type that holds all numbers of lists bit for bit.
-fn list_type(lists: &[NumberList]) -> Scalar {
-    let all = |fits: &dyn Fn(f64) -> bool| lists.iter().flat_map(|list| &list.0).all(|&x| fits(x));
-    let whole = |x: f64, low: f64, high: f64| {
-        x.fract() == 0.0 && low <= x && x <= high && x.to_bits() != (-0.0_f64).to_bits()
-    };
-    let types = [
-        (Scalar::U8, 0.0, f64::from(u8::MAX)),
-        (Scalar::I32, f64::from(i32::MIN), f64::from(i32::MAX)),
-        (Scalar::U32, 0.0, f64::from(u32::MAX)),
-    ];
-    let found = types.into_iter().find(|&(_, low, high)| all(&|x| whole(x, low, high)));
-    match found {
-        Some((scalar, ..)) => scalar,
-        None if all(&is_f32) => Scalar::F32,
-        None => Scalar::F64,
-    }
-}
-
-impl Property<'_> {
-    fn print_number(&self, printer: &mut Printer, x: f64) {
-        match self.scalar {
-            Scalar::F32 if !self.wide => printer.f32(x as f32),
-            Scalar::F32 | Scalar::F64 => printer.f64(x),
-            _ => printer.integer(x as i64),
-        }
-    }
-
-    fn print(&self, printer: &mut Printer, i: usize) {
-        match &self.value {
-            Value::Number(value, _) => self.print_number(printer, value(i)),
-            Value::Corners(_, faces) => {
-                let face = faces.face(FaceId::new(i));
-                printer.integer(face.len() as i64);
-                for v in face {
-                    printer.byte(b' ');
-                    printer.integer(v.index() as i64);
-                }
-            }
-            Value::List(_, list) => {
-                let list = list(i);
-                printer.integer(list.len() as i64);
-                for &x in list {
-                    printer.byte(b' ');
-                    self.print_number(printer, x);
-                }
-            }
-            Value::Uvs(_, faces, uvs) => {
-                let corners = faces.face_corners(FaceId::new(i));
-                printer.integer(2 * corners.len() as i64);
-                for x in corners.flat_map(|c| uvs[c.index()].to_array()) {
-                    printer.byte(b' ');
-                    self.print_number(printer, x);
-                }
-            }
-        }
-    }
-
-    #[inline]
-    fn put(&self, writer: &mut ByteWriter, i: usize) {
-        match &self.value {
-            Value::Number(value, _) => put(writer, self.scalar, value(i)),
-            Value::Corners(kind, faces) => {
-                let face = faces.face(FaceId::new(i));
-                put(writer, *kind, face.len() as f64);
-                for v in face {
-                    writer.u32(v.index() as u32);
-                }
-            }
-            Value::List(kind, list) => {
-                let list = list(i);
-                put(writer, *kind, list.len() as f64);
-                for &x in list {
-                    put(writer, self.scalar, x);
-                }
-            }
-            Value::Uvs(kind, faces, uvs) => {
-                let corners = faces.face_corners(FaceId::new(i));
-                put(writer, *kind, 2.0 * corners.len() as f64);
-                for x in corners.flat_map(|c| uvs[c.index()].to_array()) {
-                    put(writer, self.scalar, x);
-                }
-            }
-        }
-    }
-}
-
-#[inline]
-fn put(writer: &mut ByteWriter, scalar: Scalar, x: f64) {
-    match scalar {
-        Scalar::I8 => writer.i8(x as i8),
-        Scalar::U8 => writer.u8(x as u8),
-        Scalar::I16 => writer.i16(x as i16),
-        Scalar::U16 => writer.u16(x as u16),
-        Scalar::I32 => writer.i32(x as i32),
-        Scalar::U32 => writer.u32(x as u32),
-        Scalar::F32 => writer.f32(x as f32),
-        Scalar::F64 => writer.f64(x),
-    }
 }

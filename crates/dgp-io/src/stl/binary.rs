@@ -1,6 +1,6 @@
 //! Reading binary STL.
 
-use dgp_mesh::{DVec3, FaceId, FaceList, IndexedFaceSet, Progress, VertexId, parallel, weld_exact};
+use dgp_mesh::{DVec3, FaceId, FaceList, IndexedFaceSet, Progress, VertexId, parallel};
 
 use super::{FACET, HEADER, facet_count};
 use crate::{
@@ -8,6 +8,7 @@ use crate::{
     error::{Cause, Fault, Stop},
     report::Oddities,
     text::decoded,
+    weld::{Welded, weld},
 };
 
 /// Reads a binary file.
@@ -29,22 +30,26 @@ pub(super) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
         oddities.add(what, HEADER + facets.len());
     }
     let (facets, _) = facets.as_chunks::<FACET>();
-    let points = corners(facets);
-    progress.report(0.3)?;
-    let welding = weld_exact(&points);
-    progress.report(0.9)?;
-    let positions =
-        parallel::map(welding.originals.len(), |v: VertexId| points[welding.originals[v].index()]);
-    let corners = FaceList::from_corners(welding.vertices.into_values(), 3);
-    let set = IndexedFaceSet::new(positions, corners)?;
+    // Adding 0 turns −0 into 0 and leaves all else. What is no number is the same whatever its bits,
+    // since text does not keep them.
+    let bits = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { (x + 0.0).to_bits() };
+    let key = |c: usize| corner(facets, c).map(bits);
+    let Welded { numbers, firsts, .. } = weld(3 * facets.len(), key, progress.part(0.0, 0.7))?;
+    let position =
+        |v: VertexId| DVec3::from_array(corner(facets, firsts[v.index()] as usize).map(f64::from));
+    let positions = parallel::map(firsts.len(), position);
+    let corners = numbers.into_iter().map(|v| VertexId::new(v as usize)).collect();
+    progress.report(0.8)?;
+    let set = IndexedFaceSet::new(positions, FaceList::from_corners(corners, 3))?;
     let mut document = Document::from(set);
-    compare_normals(facets, &mut oddities);
-
-    let extra = facets.iter().any(|facet| facet[48..] != [0, 0]);
-    if extra {
-        let value = |facet: &[u8; FACET]| u16::from_le_bytes([facet[48], facet[49]]);
-        let values: Vec<u16> = facets.iter().map(value).collect();
-        document.set.face_attributes.insert(ATTRIBUTE_BYTES, values);
+    let extras = look_over(facets, &mut oddities);
+    progress.report(0.9)?;
+    if extras {
+        let value = |f: FaceId| {
+            let [.., low, high] = facets[f.index()];
+            u16::from_le_bytes([low, high])
+        };
+        document.set.face_attributes.insert(ATTRIBUTE_BYTES, parallel::map(facets.len(), value));
     }
     let title = bytes[..80].split(|&byte| byte == 0).next().unwrap_or_default().trim_ascii();
     if !title.is_empty() && title.iter().all(|&byte| byte >= b' ') {
@@ -53,37 +58,39 @@ pub(super) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
     Ok(Contents { document, oddities, encoding: Encoding::LittleEndian })
 }
 
-/// The three corners of each facet.
-fn corners(facets: &[[u8; FACET]]) -> Vec<DVec3> {
-    let triples: Vec<[DVec3; 3]> = parallel::map::<FaceId, _>(facets.len(), |f| {
-        let facet = &facets[f.index()];
-        [12, 24, 36].map(|at| DVec3::from_array(triple(facet, at).map(f64::from)))
-    })
-    .into_values();
-    triples.into_flattened()
+/// Corner `c` of all facets.
+#[inline]
+fn corner(facets: &[[u8; FACET]], c: usize) -> [f32; 3] {
+    triple(&facets[c / 3], 12 + 12 * (c % 3))
 }
 
 #[inline]
 fn triple(facet: &[u8; FACET], at: usize) -> [f32; 3] {
-    [at, at + 4, at + 8]
-        .map(|at| f32::from_le_bytes([facet[at], facet[at + 1], facet[at + 2], facet[at + 3]]))
+    let (numbers, _) = facet[at..at + 12].as_chunks::<4>();
+    [0, 1, 2].map(|k| f32::from_le_bytes(numbers[k]))
 }
 
-/// Notes facets whose normals point against the order of their corners.
-fn compare_normals(facets: &[[u8; FACET]], oddities: &mut Oddities) {
+/// Notes facets whose normals point against the order of their corners; whether any facet has more
+/// than zeros in its last 16 bits.
+fn look_over(facets: &[[u8; FACET]], oddities: &mut Oddities) -> bool {
     let blocks = parallel::map_blocks(facets.len(), parallel::BLOCK, |range| {
-        let against = |facet: &[u8; FACET]| {
+        let (mut count, mut first, mut extras) = (0, None, false);
+        for (facet, f) in facets[range.clone()].iter().zip(range) {
             let vector = |at| DVec3::from_array(triple(facet, at).map(f64::from));
             let [a, b, c] = [vector(12), vector(24), vector(36)];
-            (b - a).cross(c - a).dot(vector(0)) < 0.0
-        };
-        let bad = range.clone().filter(|&f| against(&facets[f]));
-        bad.fold((0, None), |(count, first), f| (count + 1, first.or(Some(f))))
+            if (b - a).cross(c - a).dot(vector(0)) < 0.0 {
+                count += 1;
+                first = first.or(Some(f));
+            }
+            extras |= facet[48..] != [0, 0];
+        }
+        (count, first, extras)
     });
-    for (count, first) in blocks {
+    for &(count, first, _) in &blocks {
         if let Some(first) = first {
             let what = "facet whose normal points against the order of its corners";
             oddities.add_many(what.into(), count, HEADER + first * FACET);
         }
     }
+    blocks.iter().any(|&(.., extras)| extras)
 }

@@ -6,7 +6,7 @@ use dgp_mesh::{DVec3, FaceList, IndexedFaceSet, Label, OBJECT, Progress, weld_ex
 
 use crate::{
     Contents, Document, Encoding, Format,
-    error::{Cause, Fault, Stop},
+    error::{Cause, Fault, Stop, countable},
     report::Oddities,
     text::{Cursor, Text, decoded, map_blocks, shown},
 };
@@ -22,6 +22,7 @@ pub(super) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
     let mut ends: Vec<u32> = Vec::new();
     let mut names: Vec<(usize, String)> = Vec::new();
     let mut oddities = Oddities::default();
+    countable("corners", blocks.iter().map(|block| block.points.len()).sum())?;
     for block in blocks {
         let (corner, facet) = (points.len() as u32, ends.len());
         points.extend(block.points);
@@ -36,15 +37,17 @@ pub(super) fn read(bytes: &[u8], progress: Progress<'_>) -> Result<Contents, Sto
     let faces = FaceList::from_ends(welding.vertices.into_values(), &ends);
     let set = IndexedFaceSet::new(positions, faces)?;
     let mut document = Document::from(set);
-    let mut labels: Vec<Label> = Vec::new();
-    let mut current = Label::default();
-    for (facet, name) in names {
-        labels.resize(facet, current);
-        current = Label::new(&name);
-    }
-    labels.resize(ends.len(), current);
-    if labels.iter().any(|label| !label.as_str().is_empty()) {
-        document.set.face_attributes.insert(OBJECT, labels);
+    if names.iter().any(|(_, name)| !name.is_empty()) {
+        let mut labels: Vec<Label> = Vec::new();
+        let mut current = Label::default();
+        for (facet, name) in names {
+            labels.resize(facet, current);
+            current = Label::new(&name);
+        }
+        labels.resize(ends.len(), current);
+        if labels.iter().any(|label| !label.as_str().is_empty()) {
+            document.set.face_attributes.insert(OBJECT, labels);
+        }
     }
     Ok(Contents { document, oddities, encoding: Encoding::Text })
 }
@@ -143,7 +146,8 @@ impl Block {
 fn triple(cursor: &mut Cursor<'_>) -> Result<DVec3, Fault> {
     let mut next = || {
         cursor.skip_blank_lines();
-        cursor.number()
+        // `nan` and `-nan` are the same, or they would be different vertices.
+        cursor.number().map(|x| if x.is_nan() { f64::NAN } else { x })
     };
     Ok(DVec3::new(next()?, next()?, next()?))
 }

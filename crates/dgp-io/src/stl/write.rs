@@ -1,33 +1,37 @@
 //! Writing STL.
 
+use std::ops::Range;
+
 use dgp_mesh::{
     AttributeColumn, DVec3, FaceId, FaceList, IndexedFaceSet, Label, OBJECT, Progress,
-    TriangulationMethod, VertexId, parallel, triangulate_polygon,
+    TriangulationMethod, VertexId, triangulate_polygon,
 };
 
 use super::{FACET, HEADER};
 use crate::{
     ATTRIBUTE_BYTES, Document, Encoding, Error,
-    binary::is_f32,
+    binary::rounded,
+    output::Output,
     print::{Printer, one_line, print_all},
     report::Losses,
 };
 
 /// Facets a thread writes at a time.
-const BLOCK: usize = 1 << 14;
+const BLOCK: usize = 1 << 12;
 
 /// An STL file.
 pub(crate) fn write(
     document: &Document,
     encoding: Encoding,
+    output: &mut Output<'_>,
     losses: &mut Losses,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
+) -> Result<(), Error> {
     let set = &document.set;
     let facets = Facets::new(set);
     note_losses(document, encoding, &facets, losses);
     if encoding == Encoding::Text {
-        return text(document, &facets, progress);
+        return text(document, &facets, output, progress);
     }
     if facets.len() > u32::MAX as usize {
         let (kind, count, limit) = ("facets", facets.len(), u32::MAX as usize);
@@ -39,20 +43,23 @@ pub(crate) fn write(
     }
     header[80..].copy_from_slice(&(facets.len() as u32).to_le_bytes());
     let attributes = set.face_attributes.get::<u16>(ATTRIBUTE_BYTES);
-    let chunks = parallel::map_blocks(facets.len(), BLOCK, |range| {
-        let mut bytes = Vec::with_capacity(range.len() * FACET);
-        for i in range.clone() {
+    output.put(&header)?;
+    let records = |range: Range<usize>, bytes: &mut Vec<u8>| {
+        for i in range {
             let (f, corners) = facets.get(set, i);
-            for x in [normal(corners)].iter().chain(&corners).flat_map(DVec3::to_array) {
-                bytes.extend_from_slice(&(x as f32).to_le_bytes());
+            let mut record = [0; FACET];
+            let (numbers, rest) = record.as_chunks_mut::<4>();
+            let vectors = [normal(corners), corners[0], corners[1], corners[2]];
+            for (place, x) in numbers.iter_mut().zip(vectors.iter().flat_map(DVec3::to_array)) {
+                *place = (x as f32).to_le_bytes();
             }
-            let attribute = attributes.map_or(0, |values| values[f]);
-            bytes.extend_from_slice(&attribute.to_le_bytes());
+            if let Some(values) = attributes {
+                rest.copy_from_slice(&values[f].to_le_bytes());
+            }
+            bytes.extend_from_slice(&record);
         }
-        progress.report(range.end as f64 / facets.len() as f64)?;
-        Ok::<_, Error>(bytes)
-    });
-    [Ok(header)].into_iter().chain(chunks).collect()
+    };
+    output.blocks(facets.len(), BLOCK, records, progress)
 }
 
 /// The triangles of the faces.
@@ -133,8 +140,7 @@ fn note_losses(document: &Document, encoding: Encoding, facets: &Facets<'_>, los
     if encoding == Encoding::Text {
         losses.add("comments have no place in the format", comments);
     } else {
-        let coordinates = set.positions().values().iter().flat_map(DVec3::to_array);
-        let rounded = coordinates.filter(|&x| !is_f32(x)).count();
+        let rounded = rounded(set.positions().values(), DVec3::to_array);
         losses.add("coordinates rounded to single precision", rounded);
         let kept = usize::from(title(document).is_some());
         losses.add("comments have no place in the format", comments - kept);
@@ -145,8 +151,9 @@ fn note_losses(document: &Document, encoding: Encoding, facets: &Facets<'_>, los
 fn text(
     document: &Document,
     facets: &Facets<'_>,
+    output: &mut Output<'_>,
     progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, Error> {
+) -> Result<(), Error> {
     let set = &document.set;
     let labels = set.face_attributes.get::<Label>(OBJECT).map(AttributeColumn::values);
     let name = |i: usize| labels.map(|labels| &labels[facets.get(set, i).0.index()]);
@@ -183,7 +190,7 @@ fn text(
         }
     };
     if facets.len() == 0 {
-        return Ok(vec![b"solid\nendsolid\n".to_vec()]);
+        return output.put(b"solid\nendsolid\n");
     }
-    print_all(facets.len(), facet, progress)
+    print_all(output, facets.len(), facet, progress)
 }

@@ -1,183 +1,19 @@
-//! Text as words and numbers: a cursor over bytes, and the cutting of a file into blocks of lines.
+//! A place in a text that moves over words and numbers.
 
-use std::{
-    ops::Range,
-    sync::atomic::{AtomicUsize, Ordering},
-};
+use super::{Text, shown};
+use crate::error::{Cause, Fault};
 
-use dgp_mesh::{Progress, parallel};
-
-use crate::{
-    Format,
-    error::{Cause, Fault, Stop},
-};
-
-/// Bytes of text a thread works on at a time: some thousand lines, so that starting a task costs
-/// nothing, and few enough that what is parsed of them stays in the second-level cache.
-const BLOCK: usize = 1 << 18;
-
-/// A file of text.
-#[derive(Clone, Copy)]
-pub(crate) struct Text<'a> {
-    pub(crate) bytes: &'a [u8],
-    /// What ends a line: `\n`, or `\r` where there is no `\n`. Another `\r` is a blank.
-    eol: u8,
-    /// Whether `\` before the end of a line joins it with the next one.
-    joined: bool,
-}
-
-impl<'a> Text<'a> {
-    /// The text in `bytes`, unless there is none or it is of the wrong kind.
-    pub(crate) fn new(bytes: &'a [u8], format: Format) -> Result<Self, Fault> {
-        if bytes.is_empty() {
-            return Err(Fault::new(0, Cause::Empty));
-        }
-        // A byte order mark, or Latin letters with zeros between them.
-        let marked = bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF");
-        let spaced = |first: usize| {
-            bytes.len() >= 8 && bytes[..8].iter().skip(first).step_by(2).all(|&byte| byte == 0)
-        };
-        if marked || spaced(0) || spaced(1) {
-            return Err(Fault::new(0, Cause::Utf16));
-        }
-        let eol = match memchr::memchr2(b'\n', b'\r', bytes) {
-            Some(end) if bytes[end] == b'\r' && memchr::memchr(b'\n', bytes).is_none() => b'\r',
-            _ => b'\n',
-        };
-        Ok(Text { bytes, eol, joined: format == Format::Obj })
-    }
-
-    /// A cursor at the beginning, behind the byte order mark.
-    pub(crate) fn start(self) -> Cursor<'a> {
-        let mark: &[u8] = b"\xEF\xBB\xBF";
-        let at = if self.bytes.starts_with(mark) { mark.len() } else { 0 };
-        self.cursor(at..self.bytes.len())
-    }
-
-    /// A cursor over a part of the text.
-    pub(crate) fn cursor(self, range: Range<usize>) -> Cursor<'a> {
-        Cursor {
-            bytes: &self.bytes[..range.end],
-            at: range.start,
-            eol: self.eol,
-            joined: self.joined,
-        }
-    }
-
-    /// The text from byte `start` cut at ends of lines. The cuts depend on the text only.
-    pub(crate) fn blocks(self, start: usize) -> Vec<Range<usize>> {
-        let len = self.bytes.len();
-        let mut blocks = Vec::new();
-        let mut at = start;
-        while at < len {
-            let mut end = at;
-            let mut search = (at + BLOCK).min(len);
-            while end == at {
-                match memchr::memchr(self.eol, &self.bytes[search..]) {
-                    Some(found) if self.is_joined(search + found) => search += found + 1,
-                    Some(found) => end = search + found + 1,
-                    None => end = len,
-                }
-            }
-            blocks.push(at..end);
-            at = end;
-        }
-        blocks
-    }
-
-    /// Whether the line that ends at `end` goes on in the next one.
-    fn is_joined(self, end: usize) -> bool {
-        let line = &self.bytes[..end];
-        self.joined && line.strip_suffix(b"\r").unwrap_or(line).ends_with(b"\\")
-    }
-
-    /// The blocks from byte `start` on with the number of the first row in each. A row is a line,
-    /// or, counted with more care, a line that is neither blank nor a comment.
-    pub(crate) fn row_blocks(self, start: usize, count: RowCount) -> Vec<(Range<usize>, usize)> {
-        let blocks = self.blocks(start);
-        let counts = parallel::map_blocks(blocks.len(), 1, |b| {
-            let block = blocks[b.start].clone();
-            match count {
-                RowCount::Lines => memchr::memchr_iter(self.eol, &self.bytes[block]).count(),
-                RowCount::Filled => {
-                    let mut cursor = self.cursor(block);
-                    let mut rows = 0;
-                    while !cursor.is_at_end() {
-                        rows += usize::from(!cursor.ends_line());
-                        cursor.skip_line();
-                    }
-                    rows
-                }
-            }
-        });
-        let mut first = 0;
-        let numbered = blocks.into_iter().zip(counts).map(|(block, count)| {
-            first += count;
-            (block, first - count)
-        });
-        numbered.collect()
-    }
-}
-
-/// Which lines count as rows.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum RowCount {
-    /// All.
-    Lines,
-    /// Those with a word.
-    Filled,
-}
-
-/// The byte at which the line `row` begins, counted from the line at `start`, blank lines left aside.
-pub(crate) fn row_byte(bytes: &[u8], start: usize, row: usize) -> usize {
-    let eol = if memchr::memchr(b'\n', bytes).is_some() { b'\n' } else { b'\r' };
-    let text = Text { bytes, eol, joined: false };
-    let mut cursor = text.cursor(start..bytes.len());
-    let mut left = row;
-    while !cursor.is_at_end() {
-        if !cursor.ends_line() {
-            if left == 0 {
-                break;
-            }
-            left -= 1;
-        }
-        cursor.skip_line();
-    }
-    cursor.at
-}
-
-/// The number of the line that byte `at` is in, from 1.
-pub(crate) fn line(bytes: &[u8], at: usize) -> usize {
-    let before = &bytes[..at.min(bytes.len())];
-    let ends = memchr::memchr_iter(b'\n', before).count();
-    let old = ends == 0 && memchr::memchr(b'\n', bytes).is_none();
-    1 + if old { memchr::memchr_iter(b'\r', before).count() } else { ends }
-}
-
-/// `f` of each block, in order; the first fault in the order of the file counts.
-pub(crate) fn map_blocks<T: Send>(
-    blocks: &[Range<usize>],
-    f: impl Fn(usize, Range<usize>) -> Result<T, Stop> + Sync + Send,
-    progress: Progress<'_>,
-) -> Result<Vec<T>, Stop> {
-    let done = AtomicUsize::new(0);
-    let results = parallel::map_blocks(blocks.len(), 1, |range| {
-        let result = f(range.start, blocks[range.start].clone())?;
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress.report(done as f64 / blocks.len() as f64)?;
-        Ok(result)
-    });
-    results.into_iter().collect()
-}
+/// Digits of which every number fits 64 bits.
+const MOST_DIGITS: usize = 18;
 
 /// A place in a text that moves over words and numbers. Blanks are all bytes up to the space that
 /// do not end a line.
 #[derive(Clone, Copy)]
 pub(crate) struct Cursor<'a> {
-    bytes: &'a [u8],
+    pub(super) bytes: &'a [u8],
     pub(crate) at: usize,
-    eol: u8,
-    joined: bool,
+    pub(super) eol: u8,
+    pub(super) joined: bool,
 }
 
 impl<'a> Cursor<'a> {
@@ -387,9 +223,11 @@ impl<'a> Cursor<'a> {
         while let Some(digit) = self.bytes.get(at).map(|byte| byte.wrapping_sub(b'0'))
             && digit < 10
         {
-            // Beyond all counts it stays beyond: what matters is that it is out of range.
-            value = value.saturating_mul(10).saturating_add(i64::from(digit));
+            value = value.wrapping_mul(10).wrapping_add(i64::from(digit));
             at += 1;
+        }
+        if at - start > MOST_DIGITS {
+            value = saturated(&self.bytes[start..at]);
         }
         if at == start {
             return None;
@@ -407,8 +245,15 @@ impl<'a> Cursor<'a> {
             Some(value) if self.ends_word(self.at) => Ok(value),
             _ => {
                 self.at = start;
-                let text = shown(self.word());
-                Err(Fault::new(start, Cause::NotAWholeNumber { text }))
+                let word = self.word();
+                Err(Fault::new(
+                    start,
+                    if word.is_empty() {
+                        Cause::TooFewNumbers { found: 0, expected: 1 }
+                    } else {
+                        Cause::NotAWholeNumber { text: shown(word) }
+                    },
+                ))
             }
         }
     }
@@ -420,28 +265,19 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// A word as messages show it: not too much of it, and only what can be printed.
-pub(crate) fn shown(word: &[u8]) -> String {
-    const MOST: usize = 40;
-    let cut = String::from_utf8_lossy(&word[..word.len().min(MOST)]);
-    let mut text: String = cut.chars().map(|c| if c.is_control() { '·' } else { c }).collect();
-    if word.len() > MOST {
-        text.push('…');
-    }
-    text
-}
-
-/// Bytes as text: UTF-8, or else Latin-1, in which every byte is a letter.
-pub(crate) fn decoded(bytes: &[u8]) -> String {
-    match str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
-    }
+/// The number of these digits. Beyond all counts it stays beyond: what matters is that it is out of
+/// range.
+#[cold]
+fn saturated(digits: &[u8]) -> i64 {
+    let add =
+        |value: i64, digit: &u8| value.saturating_mul(10).saturating_add((digit - b'0').into());
+    digits.iter().fold(0, add)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::line, *};
+    use crate::Format;
 
     fn text(bytes: &[u8]) -> Text<'_> {
         Text::new(bytes, Format::Obj).unwrap()
@@ -461,9 +297,12 @@ mod tests {
 
     #[test]
     fn whole_numbers_saturate() {
-        let mut cursor = text(b"-12 99999999999999999999 7x").start();
+        let mut cursor =
+            text(b"-12 99999999999999999999 00000000000000000000042 999999999999999999 7x").start();
         assert_eq!(cursor.integer().unwrap(), -12);
         assert_eq!(cursor.integer().unwrap(), i64::MAX);
+        assert_eq!(cursor.integer().unwrap(), 42);
+        assert_eq!(cursor.integer().unwrap(), 999_999_999_999_999_999);
         assert!(cursor.integer().is_err());
     }
 
@@ -474,23 +313,5 @@ mod tests {
         assert_eq!((cursor.number().unwrap(), cursor.number().unwrap()), (1.0, 2.0));
         assert!(cursor.ends_line());
         assert_eq!(line(joined, cursor.at), 2);
-    }
-
-    #[test]
-    fn blocks_end_with_lines_and_cover_the_text() {
-        let mut bytes = b"f 1 2 3\n".repeat(BLOCK / 3);
-        bytes.extend(b"v 1 2 \\\n".repeat(BLOCK / 4));
-        let blocks = text(&bytes).blocks(0);
-        assert!(blocks.len() > 2);
-        assert_eq!(blocks.iter().map(Range::len).sum::<usize>(), bytes.len());
-        let cuts = blocks[1..].iter().map(|block| block.start);
-        assert!(cuts.into_iter().all(|at| bytes[..at].ends_with(b"3\n")));
-    }
-
-    #[test]
-    fn utf16_and_nothing_are_refused() {
-        let utf16: Vec<u8> = "v 1 2 3".bytes().flat_map(|byte| [0, byte]).collect();
-        assert_eq!(Text::new(&utf16, Format::Obj).err().unwrap().cause, Cause::Utf16);
-        assert_eq!(Text::new(b"", Format::Obj).err().unwrap().cause, Cause::Empty);
     }
 }
