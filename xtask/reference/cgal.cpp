@@ -13,6 +13,8 @@
 #include <CGAL/boost/graph/IO/polygon_mesh_io.h>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 
+#include <Eigen/Sparse>
+
 #include <limits>
 #include <memory>
 
@@ -219,6 +221,33 @@ void normals(Report& report, const Raw& raw, int repeat) {
     report.number("value", map[Mesh::Vertex_index(uint32_t(mesh->num_vertices() / 2))].x());
 }
 
+// Cotangent weights of the corners of each face as Eigen's triplets.
+void laplacian(Report& report, const Raw& raw, int repeat) {
+    const auto mesh = built(raw);
+    double value = 0;
+    report.time(repeat, [&] {
+        std::vector<Eigen::Triplet<double>> triplets;
+        triplets.reserve(12 * mesh->num_faces());
+        for (const auto f : mesh->faces())
+            for (const auto h : halfedges_around_face(halfedge(f, *mesh), *mesh)) {
+                const auto a = source(h, *mesh), b = target(h, *mesh);
+                const auto c = target(next(h, *mesh), *mesh);
+                const Vector u = mesh->point(a) - mesh->point(c), v = mesh->point(b) - mesh->point(c);
+                const double w = 0.5 * (u * v) / std::sqrt(CGAL::cross_product(u, v).squared_length());
+                const int i = int(a), j = int(b);
+                triplets.emplace_back(i, j, -w);
+                triplets.emplace_back(j, i, -w);
+                triplets.emplace_back(i, i, w);
+                triplets.emplace_back(j, j, w);
+            }
+        Eigen::SparseMatrix<double> matrix(int(mesh->num_vertices()), int(mesh->num_vertices()));
+        matrix.setFromTriplets(triplets.begin(), triplets.end());
+        value = matrix.coeff(0, 0);
+        return matrix;
+    });
+    report.number("value", value);
+}
+
 void read(Report& report, const Call& call) {
     double vertices = 0, faces = 0;
     report.time(call.repeat, [&] {
@@ -254,6 +283,7 @@ int main(int count, char** arguments) {
             else if (call.operation == "build") report.time(call.repeat, [&] { return built(raw); });
             else if (call.operation == "memory") memory(report, [&] { return built(raw); });
             else if (call.operation == "rings") rings(report, raw, call.repeat);
+            else if (call.operation == "laplacian") laplacian(report, raw, call.repeat);
             else if (call.operation == "normals") normals(report, raw, call.repeat);
             else if (call.operation == "write-ascii") write(report, raw, call, false);
             else if (call.operation == "write-binary") write(report, raw, call, true);

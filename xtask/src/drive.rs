@@ -9,13 +9,18 @@ use std::{
 };
 
 use dgp_io::{Document, Encoding, WriteOptions};
-use dgp_laplace::smooth::{UniformOptions, uniform};
+use dgp_laplace::{
+    laplacian::{cotangent_laplacian, uniform_laplacian, vertex_masses},
+    smooth::{UniformOptions, uniform},
+    spectral::Eigenbasis,
+};
 use dgp_mesh::{
     DVec3, IndexedFaceSet, Mesh, Progress, RepairOptions, VertexId, VertexSet,
     graph::{Until, dijkstra},
     measure::{NormalWeight, edge_lengths, vertex_normals},
     repair,
 };
+use dgp_sparse::{Cholesky, CholeskyOptions, EigenOptions};
 use dgp_view::{Model, RenderOptions, Scene, render};
 use serde_json::{Map, Value, json};
 
@@ -78,6 +83,12 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
             let mesh = built(&raw::read(&call.input)?)?;
             time(report, call.repeat, || Ok(vertex_normals(&mesh, NormalWeight::Area)))
         }
+        "laplacian" => {
+            let mesh = built(&raw::read(&call.input)?)?;
+            time(report, call.repeat, || Ok(cotangent_laplacian(&mesh)?))
+        }
+        "cholesky" => cholesky(call, report),
+        "eigenpairs" => eigenpairs(call, report),
         "dijkstra" => {
             let mesh = built(&raw::read(&call.input)?)?;
             let start = [VertexId::new(0)];
@@ -128,6 +139,43 @@ fn write(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
         let document = Document { set: mesh.to_indexed(), ..Document::default() };
         Ok(dgp_io::write(&call.out, &document, &options, Progress::NONE)?)
     })
+}
+
+/// Order, factor and solve L + M for the graph of the mesh, M a thousandth of the identity, with one thread
+/// as CHOLMOD has.
+fn cholesky(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
+    let mesh = built(&raw::read(&call.input)?)?;
+    let n = mesh.vertex_count();
+    let matrix = uniform_laplacian(&mesh)?.plus_diagonal(&vec![1e-3; n])?;
+    let rhs: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+    let options = CholeskyOptions::default();
+    let (mut entries, mut worst) = (0, 0.0_f64);
+    time(report, call.repeat, || {
+        let factor = Cholesky::new(&matrix, &options, dgp_sparse::Progress::NONE)?;
+        let x = factor.solve(&rhs)?;
+        entries = factor.symbolic().factor_entries();
+        let product = matrix.product(&x);
+        worst = product.iter().zip(&rhs).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        Ok((factor, x))
+    })?;
+    report.insert("factor_entries".into(), json!(entries));
+    report.insert("residual".into(), json!(worst));
+    Ok(())
+}
+
+/// A hundred eigenpairs of the cotangent Laplacian.
+fn eigenpairs(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
+    let mesh = built(&raw::read(&call.input)?)?;
+    let (laplacian, masses) = (cotangent_laplacian(&mesh)?, vertex_masses(&mesh));
+    let options = EigenOptions::default();
+    let mut worst = 0.0_f64;
+    time(report, call.repeat, || {
+        let basis = Eigenbasis::new(&laplacian, &masses, 100, &options, Progress::NONE)?;
+        worst = basis.residuals().iter().copied().fold(0.0, f64::max);
+        Ok(basis)
+    })?;
+    report.insert("residual".into(), json!(worst));
+    Ok(())
 }
 
 fn built(set: &IndexedFaceSet) -> Outcome<Mesh> {

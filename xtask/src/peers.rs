@@ -23,8 +23,12 @@ const FLAGS: [&str; 5] = ["-std=c++17", "-O3", "-DNDEBUG", "-march=native", "-w"
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What the drivers need beside Rust, by the names of Debian's packages.
-const PACKAGES: &str =
-    "apt-get install -y --no-install-recommends g++ libopenmesh-dev libcgal-dev libcgal-demo";
+const PACKAGES: &str = "apt-get install -y --no-install-recommends g++ libopenmesh-dev libcgal-dev \
+                        libcgal-demo libeigen3-dev";
+
+/// What the driver of CHOLMOD needs.
+const CHOLMOD_PACKAGES: &str = "apt-get install -y --no-install-recommends libsuitesparse-dev \
+                                libmetis-dev libopenblas-dev";
 
 /// Which OpenMesh to link.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -48,6 +52,8 @@ pub(crate) struct Driver {
 pub(crate) struct Peers {
     pub(crate) openmesh: Driver,
     pub(crate) cgal: Driver,
+    /// Absent where its packages are.
+    pub(crate) cholmod: Option<Driver>,
 }
 
 impl Peers {
@@ -57,6 +63,7 @@ impl Peers {
             ("g++", shell::exists("g++")),
             ("libopenmesh-dev", Path::new("/usr/include/OpenMesh/Core/System/config.h").exists()),
             ("libcgal-dev", Path::new("/usr/include/CGAL/Surface_mesh.h").exists()),
+            ("libeigen3-dev", Path::new("/usr/include/eigen3/Eigen/Sparse").exists()),
         ]
         .into_iter()
         .filter_map(|(name, there)| (!there).then_some(name))
@@ -82,17 +89,27 @@ impl Peers {
             },
         };
         let program = compile("openmesh", &folder, &openmesh.arguments)?;
-        let cgal = compile("cgal", &folder, &[])?;
+        let cgal = compile("cgal", &folder, &["-I/usr/include/eigen3".into()])?;
+        let cholmod = match cholmod(&folder) {
+            Ok(program) => {
+                Some(Driver { name: "CHOLMOD".into(), program, first: Vec::new() })
+            }
+            Err(error) => {
+                eprintln!("without CHOLMOD: {error}\nget it by\n  {CHOLMOD_PACKAGES}");
+                None
+            }
+        };
         Ok(Peers {
             openmesh: Driver { name: openmesh.name.into(), program, first: Vec::new() },
             cgal: Driver { name: "CGAL".into(), program: cgal, first: Vec::new() },
+            cholmod,
         })
     }
 }
 
 impl fmt::Display for Peers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for driver in [&self.openmesh, &self.cgal] {
+        for driver in [&self.openmesh, &self.cgal].into_iter().chain(&self.cholmod) {
             writeln!(f, "{}: {}", driver.name, driver.program.display())?;
         }
         Ok(())
@@ -114,6 +131,17 @@ impl Driver {
         serde_json::from_str(&text)
             .map_err(|error| format!("{} printed no JSON: {error}: {text}", self.name).into())
     }
+}
+
+/// The driver of CHOLMOD, with one thread of OpenBLAS.
+fn cholmod(folder: &Path) -> Outcome<PathBuf> {
+    let include = "/usr/include/suitesparse";
+    if !Path::new(include).join("cholmod.h").exists() {
+        return Err("libsuitesparse-dev is not there".into());
+    }
+    let arguments =
+        ["-I", include, "-lcholmod", "-lmetis", "-lopenblas"].map(String::from).to_vec();
+    compile("cholmod", folder, &arguments)
 }
 
 /// What to link for OpenMesh.

@@ -9,6 +9,8 @@ pub(super) struct Case {
     pub(super) ours: &'static str,
     pub(super) openmesh: Option<&'static str>,
     pub(super) cgal: Option<&'static str>,
+    /// Orders for which CHOLMOD does the same.
+    pub(super) cholmod: &'static [&'static str],
     pub(super) data: Data,
     pub(super) figure: Figure,
 }
@@ -31,6 +33,8 @@ pub(super) enum Data {
 pub(super) enum Figure {
     /// Milliseconds of wall time.
     Time,
+    /// Numbers of the matrix factor, by this name.
+    Entries(&'static str),
     /// A figure in bytes, told per triangle.
     Bytes(&'static str),
 }
@@ -43,6 +47,7 @@ pub(super) fn all() -> Vec<Case> {
         ours: operation,
         openmesh: Some(operation),
         cgal: Some(operation),
+        cholmod: &[],
         data: Data::Raw,
         figure: Figure::Time,
     };
@@ -67,6 +72,23 @@ pub(super) fn all() -> Vec<Case> {
         Case {
             openmesh: None,
             ..case("dijkstra", "distances along edges from a vertex", "dijkstra")
+        },
+        Case {
+            openmesh: None,
+            ..case("laplacian", "the matrix of cotangent weights", "laplacian")
+        },
+        Case {
+            openmesh: None,
+            cgal: None,
+            cholmod: &["amd", "metis"],
+            ..case("cholesky", "order, factor and solve L + M with 1 thread", "cholesky")
+        },
+        Case {
+            openmesh: None,
+            cgal: None,
+            cholmod: &["amd", "metis"],
+            figure: Figure::Entries("factor_entries"),
+            ..case("fill", "entries of the factor of L + M per triangle", "cholesky")
         },
         Case {
             openmesh: None,

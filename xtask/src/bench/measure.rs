@@ -50,6 +50,12 @@ pub(super) fn case(
     let mut drivers = vec![(Driver::ours().ok()?, case.ours)];
     drivers.extend(case.openmesh.map(|operation| (peers.openmesh.clone(), operation)));
     drivers.extend(case.cgal.map(|operation| (peers.cgal.clone(), operation)));
+    if let Some(cholmod) = &peers.cholmod {
+        drivers.extend(case.cholmod.iter().map(|&order| {
+            let name = format!("{} {order}", cholmod.name);
+            (Driver { name, ..cholmod.clone() }, order)
+        }));
+    }
 
     let (rounds, repeat) = match effort {
         Effort::Quick => (1, "1"),
@@ -83,7 +89,11 @@ pub(super) fn case(
         what: case.what,
         input: input.name.clone(),
         triangles: input.triangles,
-        unit: if case.figure == Figure::Time { "ms" } else { "B/triangle" },
+        unit: match case.figure {
+            Figure::Time => "ms",
+            Figure::Bytes(_) => "B/triangle",
+            Figure::Entries(_) => "entries/triangle",
+        },
         ours,
         peers: names.zip(series).collect(),
         failures: failures.into_iter().map(|(name, error)| format!("{name}: {error}")).collect(),
@@ -102,7 +112,7 @@ impl Series {
                 self.values.extend(median(&list("ms")));
                 self.processor.extend(median(&list("cpu_ms")));
             }
-            Figure::Bytes(name) => {
+            Figure::Bytes(name) | Figure::Entries(name) => {
                 self.values.extend(answer[name].as_f64().map(|bytes| bytes / triangles as f64));
             }
         }

@@ -6,12 +6,18 @@ use clap::{Args, ValueEnum};
 use dgp::{
     laplace::{
         self,
+        flow::{FlowKind, FlowOptions, FlowSize, mean_curvature_flow},
         smooth::{
-            Boundary, NeighborWeight, SmoothReport, TangentialOptions, TaubinOptions,
-            UniformOptions, Volume, tangential, taubin, uniform,
+            BilateralOptions, BilateralScheme, Boundary, CotangentOptions, ImplicitOptions,
+            ImplicitWeight, NeighborWeight, SmoothReport, TangentialOptions, TaubinOptions,
+            UniformOptions, Volume, bilateral, cotangent, implicit, tangential, taubin, uniform,
         },
     },
-    mesh::{Mesh, Progress, VertexSet},
+    mesh::{
+        Mesh, Progress, VertexSet,
+        measure::{edge_length_range, volume},
+        topology::boundary_loops,
+    },
 };
 use serde_json::{Value, json};
 
@@ -38,11 +44,11 @@ pub(crate) struct Smoothing {
     /// How to smooth
     #[arg(long, value_enum, default_value_t = Method::Taubin)]
     pub(crate) method: Method,
-    /// How often
+    /// How often; for bilateral smoothing how often normals are filtered
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub(crate) iterations: usize,
-    /// λ, the part of the way to the mean of its neighbors that a vertex moves; by default that of
-    /// the method
+    /// λ, the part of the way to the mean of its neighbors that a vertex moves; for implicit smoothing
+    /// and flows the time of a step in squares of the mean edge length; by default that of the method
     #[arg(long, value_name = "X")]
     pub(crate) lambda: Option<f64>,
     /// The frequency below which a wave is shape (Taubin)
@@ -51,6 +57,15 @@ pub(crate) struct Smoothing {
     /// What becomes of the boundary
     #[arg(long, value_enum, default_value_t = BoundaryRule::Fixed)]
     pub(crate) boundary: BoundaryRule,
+    /// How much unit normals differ at an edge of the shape that is to stay (bilateral)
+    #[arg(long, value_name = "X")]
+    pub(crate) sigma: Option<f64>,
+    /// Filter all normals at once, this close to the given ones: from 0 to 1 (bilateral)
+    #[arg(long, value_name = "MU")]
+    pub(crate) global: Option<f64>,
+    /// Let neighbors count the same instead of by cotangents (implicit)
+    #[arg(long)]
+    pub(crate) uniform_weights: bool,
     /// Weigh neighbors by area, so that areas even out (tangential)
     #[arg(long)]
     pub(crate) by_area: bool,
@@ -66,6 +81,16 @@ pub(crate) enum Method {
     Uniform,
     /// Forth and back: smooths without shrinking (Taubin 1995)
     Taubin,
+    /// Against the curvature: smooths and shrinks, and leaves the spacing as it is
+    Cotan,
+    /// Large steps at once by solving for where they lead (Desbrun 1999)
+    Implicit,
+    /// Within the faces of the shape; its edges stay (Zheng 2011)
+    Bilateral,
+    /// By mean curvature, weights anew in each step: convex shapes become round points
+    Flow,
+    /// The same by the angles of the beginning: no necks pinch off (Kazhdan 2012)
+    Conformal,
     /// Along the surface: evens out triangles, keeps the shape
     Tangential,
 }
@@ -130,6 +155,33 @@ impl Smoothing {
                 let options = TaubinOptions { iterations, lambda, pass_band, boundary, volume };
                 taubin(mesh, &fixed, &options, progress)
             }
+            Method::Cotan => {
+                let lambda = self.lambda.unwrap_or(CotangentOptions::default().lambda);
+                let options = CotangentOptions { iterations, lambda, boundary, volume };
+                cotangent(mesh, &fixed, &options, progress)
+            }
+            Method::Implicit => {
+                let lambda = self.lambda.unwrap_or(ImplicitOptions::default().lambda);
+                let weight = if self.uniform_weights {
+                    ImplicitWeight::Uniform
+                } else {
+                    ImplicitWeight::Cotangent
+                };
+                let options = ImplicitOptions { iterations, lambda, weight, boundary, volume };
+                implicit(mesh, &fixed, &options, progress)
+            }
+            Method::Bilateral => {
+                let default = BilateralOptions::default();
+                let scheme = match self.global {
+                    Some(fidelity) => BilateralScheme::Global { fidelity },
+                    None => BilateralScheme::Local { iterations },
+                };
+                let sigma = self.sigma.unwrap_or(default.sigma);
+                let options = BilateralOptions { scheme, sigma, boundary, volume, ..default };
+                bilateral(mesh, &fixed, &options, progress)
+            }
+            Method::Flow => self.flow(mesh, FlowKind::MeanCurvature, progress),
+            Method::Conformal => self.flow(mesh, FlowKind::Conformalized, progress),
             Method::Tangential => {
                 let default = TangentialOptions::default();
                 let lambda = self.lambda.unwrap_or(default.lambda);
@@ -140,6 +192,37 @@ impl Smoothing {
             }
         }
     }
+}
+
+impl Smoothing {
+    /// The flow, told as a smoothing; `--keep-volume` keeps the area instead.
+    fn flow(
+        &self,
+        mesh: &mut Mesh,
+        kind: FlowKind,
+        progress: Progress<'_>,
+    ) -> Result<SmoothReport, laplace::Error> {
+        let size = if self.keep_volume { FlowSize::KeepsArea } else { FlowSize::Shrinks };
+        let edge = edge_length_range(mesh).map_or(0.0, |range| range.mean);
+        let time = self.lambda.unwrap_or(1.0) * edge * edge;
+        let options = FlowOptions { steps: self.iterations, kind, size };
+        let (before, volume_before) = (mesh.positions().clone(), closed_volume(mesh));
+        let report = mean_curvature_flow(mesh, &VertexSet::new(), time, &options, progress)?;
+        let moved = mesh.vertices().map(|v| (mesh.position(v) - before[v]).length());
+        let moved: Vec<f64> = moved.collect();
+        Ok(SmoothReport {
+            iterations: report.steps,
+            free_vertices: report.free_vertices,
+            volume_before,
+            volume_after: closed_volume(mesh),
+            mean_displacement: moved.iter().sum::<f64>() / moved.len().max(1) as f64,
+            max_displacement: moved.iter().copied().fold(0.0, f64::max),
+        })
+    }
+}
+
+fn closed_volume(mesh: &Mesh) -> Option<f64> {
+    boundary_loops(mesh).is_empty().then(|| volume(mesh))
 }
 
 fn to_json(report: &SmoothReport) -> Value {
