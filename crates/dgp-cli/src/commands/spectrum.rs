@@ -155,6 +155,12 @@ impl Spectrum {
             "eigenvalues": basis.values(),
             "residuals": basis.residuals(),
             "zero_eigenvalues": basis.zero_count(),
+            "orthogonality": basis.report().orthogonality,
+            "confirmed": basis.report().confirmed,
+            "components": basis.report().components,
+            "shift": basis.report().shift,
+            "solves": basis.report().solves,
+            "restarts": basis.report().restarts,
             "nodal_domains": domains,
         });
         session.finish(&summary, &report)?;

@@ -14,12 +14,9 @@
 //! - Departs from it: vertices on no face have no mass; there all functions are zero.
 
 use dgp_mesh::{Progress, VertexMap};
-use dgp_sparse::{EigenOptions, Mass, SparseMatrix, eigenpairs};
+use dgp_sparse::{EigenOptions, EigenReport, Mass, SparseMatrix, eigenpairs};
 
 use crate::{Error, solve::with_progress};
-
-/// Eigenvalues below this part of the mean one count as zero.
-const ZERO: f64 = 1e-12;
 
 /// The eigenfunctions with the smallest eigenvalues, orthonormal.
 #[derive(Clone, Debug)]
@@ -27,10 +24,8 @@ pub struct Eigenbasis {
     values: Vec<f64>,
     /// One function after the other.
     functions: Vec<f64>,
-    residuals: Vec<f64>,
     masses: VertexMap<f64>,
-    /// Σ of the diagonal of L over that of M: the mean of all eigenvalues, roughly.
-    mean: f64,
+    report: EigenReport,
 }
 
 impl Eigenbasis {
@@ -80,10 +75,8 @@ impl Eigenbasis {
             }
             functions
         };
-        let trace: f64 = laplacian.diagonal().iter().sum();
-        let mean = trace / masses.values().iter().sum::<f64>();
-        let (values, residuals) = (pairs.values, pairs.residuals);
-        Ok(Eigenbasis { values, functions, residuals, masses: masses.clone(), mean })
+        let (values, report) = (pairs.values, pairs.report);
+        Ok(Eigenbasis { values, functions, masses: masses.clone(), report })
     }
 
     /// How many functions there are.
@@ -106,9 +99,14 @@ impl Eigenbasis {
         &self.values
     }
 
-    /// How well each pair solves the equation, see [`dgp_sparse::Eigenpairs`].
+    /// How well each pair solves the equation, see [`EigenReport::residuals`].
     pub fn residuals(&self) -> &[f64] {
-        &self.residuals
+        &self.report.residuals
+    }
+
+    /// What was checked, and what it cost.
+    pub fn report(&self) -> &EigenReport {
+        &self.report
     }
 
     /// The mass of each vertex.
@@ -127,7 +125,7 @@ impl Eigenbasis {
 
     /// How many eigenvalues are zero but for rounding: the number of parts, if there are functions enough.
     pub fn zero_count(&self) -> usize {
-        self.values.partition_point(|&value| value <= ZERO * self.mean)
+        self.report.zeros
     }
 
     /// The first functions alone.
@@ -138,7 +136,8 @@ impl Eigenbasis {
         let mut basis = self.clone();
         assert!(count <= basis.values.len(), "{count} functions of {}", basis.values.len());
         basis.values.truncate(count);
-        basis.residuals.truncate(count);
+        basis.report.residuals.truncate(count);
+        basis.report.zeros = basis.report.zeros.min(count);
         basis.functions.truncate(count * basis.masses.len());
         basis
     }

@@ -24,7 +24,7 @@ pub struct Fiedler {
     pub value: f64,
     /// Its function, Σ m f² = 1.
     pub vector: VertexMap<f64>,
-    /// How well both solve the equation, see [`dgp_sparse::Eigenpairs`].
+    /// How well both solve the equation, see [`dgp_sparse::EigenReport::residuals`].
     pub residual: f64,
 }
 
