@@ -6,6 +6,7 @@
 //! | what is in it | [`Scene`], [`Panel`], [`Model`], [`Shape`], [`Placement`] |
 //! | how models look | [`Style`]: [`Fill`], [`Shading`], [`BackFaces`], [`Stroke`], [`Points`], [`Mark`], [`Arrows`] |
 //! | their color | [`Paint`], [`attribute_paint`]: [`Field`], [`Scalars`], [`ColorMap`], [`Range`], [`Checker`] |
+//! | curves over an axis, as SVG | [`Plot`], [`Curve`], [`Axis`] |
 //! | the camera | [`RenderOptions`]: [`View`], [`Up`], [`Projection`], [`Framing`], [`Background`] |
 //!
 //! ```
@@ -39,6 +40,7 @@ mod normals;
 mod occlusion;
 mod options;
 mod paint;
+mod plot;
 mod raster;
 mod render;
 mod report;
@@ -53,6 +55,7 @@ pub use error::Error;
 pub use image::Image;
 pub use options::{Background, ColorBars, Columns, Framing, Projection, RenderOptions, Up, View};
 pub use paint::{Checker, Field, NOT_A_NUMBER, Paint, Range, Scalars, attribute_paint};
+pub use plot::{Axis, Curve, Marker, Plot};
 pub use render::{picture, render};
 pub use report::{ModelReport, RenderReport};
 pub use scene::{Model, Panel, Placement, Scene, Shape};

@@ -12,8 +12,12 @@
 //! | find shortest paths on edges | [`mesh::graph`] |
 //! | list what is wrong with faces, and mend it | [`mesh::defects`], [`mesh::repair()`] |
 //! | read and write files | [`io`] |
-//! | remove noise | [`laplace::smooth`] |
-//! | draw pictures | [`view`] |
+//! | know how surfaces bend | [`mesh::curvature`] |
+//! | have the Laplacian of a mesh or a cloud | [`laplace::laplacian`], [`laplace::intrinsic`], [`laplace::kernel`] |
+//! | remove noise, let heat or curvature flow | [`laplace::smooth`], [`laplace::flow`] |
+//! | know the waves of a shape, cut, compress, match it | [`laplace::spectral`] |
+//! | solve sparse systems, find eigenpairs | [`sparse`] |
+//! | draw pictures, plot curves | [`view`] |
 //! | see how far a long computation is, and stop it | [`mesh::Progress`] |
 //!
 //! Programs to start from (`cargo run -p dgp --example NAME`):
@@ -52,4 +56,5 @@
 pub use dgp_io as io;
 pub use dgp_laplace as laplace;
 pub use dgp_mesh as mesh;
+pub use dgp_sparse as sparse;
 pub use dgp_view as view;

@@ -2,15 +2,20 @@
 
 mod check;
 mod completions;
+mod compress;
 mod convert;
+mod curvature;
 mod demo;
 mod edit;
 mod geodesic;
 mod info;
 mod manual;
+mod partition;
 mod render;
 mod repair;
+mod scalars;
 mod smooth;
+mod spectrum;
 
 use std::path::Path;
 
@@ -35,6 +40,14 @@ pub(crate) enum Command {
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two
     Geodesic(geodesic::Geodesic),
+    /// Gaussian, mean and principal curvatures at the vertices
+    Curvature(curvature::Curvature),
+    /// The lowest eigenvalues and eigenfunctions of a Laplacian
+    Spectrum(spectrum::Spectrum),
+    /// Cut a surface into parts where little holds them together
+    Partition(partition::Partition),
+    /// Keep the first waves of a shape; what that costs and loses
+    Compress(compress::Compress),
     /// Draw meshes into a PNG
     Render(render::Render),
     /// Run the whole chain on a built-in scan, or on a file, into a folder with pictures

@@ -2,6 +2,7 @@
 
 mod elements;
 mod folder;
+mod spectra;
 mod texts;
 
 use std::fs;
