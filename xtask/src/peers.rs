@@ -123,6 +123,11 @@ impl Driver {
         Ok(Driver { name: "dgp".into(), program, first: vec!["drive".into()] })
     }
 
+    /// The same driver by another name in tables.
+    pub(crate) fn named(&self, name: String) -> Driver {
+        Driver { name, ..self.clone() }
+    }
+
     /// Runs one operation in a process of its own; an error holds what it wrote to standard error.
     pub(crate) fn call(&self, operation: &str, input: &Path, options: &[&str]) -> Outcome<Value> {
         let mut command = Command::new(&self.program);

@@ -52,8 +52,7 @@ pub(super) fn case(
     drivers.extend(case.cgal.map(|operation| (peers.cgal.clone(), operation)));
     if let Some(cholmod) = &peers.cholmod {
         drivers.extend(case.cholmod.iter().map(|&order| {
-            let name = format!("{} {order}", cholmod.name);
-            (Driver { name, ..cholmod.clone() }, order)
+            (cholmod.named(format!("{} {order}", cholmod.name)), order)
         }));
     }
 

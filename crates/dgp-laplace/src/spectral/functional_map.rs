@@ -242,8 +242,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Solves a full positive definite system, given column after column, for right-hand sides one after the other.
 pub(super) fn solve_dense(n: usize, matrix: &[f64], rhs: &[f64]) -> Result<Vec<f64>, Error> {
-    let triplets: Vec<(usize, usize, f64)> =
-        matrix.iter().enumerate().map(|(at, &value)| (at % n, at / n, value)).collect();
+    let entry = |(at, &value): (usize, &f64)| ((at % n) as u32, (at / n) as u32, value);
+    let triplets: Vec<(u32, u32, f64)> = matrix.iter().enumerate().map(entry).collect();
     let matrix = SparseMatrix::from_triplets(n, n, &triplets)?;
     let factor = with_progress(Progress::NONE, |progress| {
         Cholesky::new(&matrix, &CholeskyOptions::default(), progress)
