@@ -2,7 +2,8 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use dgp_laplace::smooth::{
-    NeighborWeight, TangentialOptions, TaubinOptions, UniformOptions, tangential, taubin, uniform,
+    BilateralOptions, CotangentOptions, ImplicitOptions, NeighborWeight, TangentialOptions,
+    TaubinOptions, UniformOptions, bilateral, cotangent, implicit, tangential, taubin, uniform,
 };
 use dgp_mesh::{Mesh, Progress, VertexSet, shapes};
 
@@ -35,6 +36,20 @@ fn smoothing(criterion: &mut Criterion) {
         bench("tangential by area", &|mesh| {
             tangential(mesh, &none, &area, Progress::NONE).map(drop).unwrap();
         });
+        bench("cotangent", &|mesh| {
+            cotangent(mesh, &none, &CotangentOptions::default(), Progress::NONE).map(drop).unwrap();
+        });
+        if level == 6 {
+            bench("implicit", &|mesh| {
+                implicit(mesh, &none, &ImplicitOptions::default(), Progress::NONE)
+                    .map(drop)
+                    .unwrap();
+            });
+            bench("bilateral", &|mesh| {
+                let options = BilateralOptions::default();
+                bilateral(mesh, &none, &options, Progress::NONE).map(drop).unwrap();
+            });
+        }
     }
     group.finish();
 }

@@ -1,8 +1,13 @@
-//! Smoothing of meshes with the Laplacian.
+//! The Laplacian of meshes and point clouds, and what it does.
 //!
 //! | topic | functions |
 //! |---|---|
-//! | smoothing ([`smooth`]) | [`uniform`](smooth::uniform) [`taubin`](smooth::taubin) [`tangential`](smooth::tangential) |
+//! | matrices of meshes ([`laplacian`]) | [`uniform_laplacian`](laplacian::uniform_laplacian) [`cotangent_laplacian`](laplacian::cotangent_laplacian) [`mean_value_laplacian`](laplacian::mean_value_laplacian) [`mass_matrix`](laplacian::mass_matrix) |
+//! | without negative weights ([`intrinsic`]) | [`intrinsic_delaunay`](intrinsic::intrinsic_delaunay) [`tufted_laplacian`](intrinsic::tufted_laplacian) [`point_cloud_laplacian`](intrinsic::point_cloud_laplacian) |
+//! | by heat kernels ([`kernel`]) | [`gaussian_laplacian`](kernel::gaussian_laplacian) [`mesh_heat_laplacian`](kernel::mesh_heat_laplacian) |
+//! | differential coordinates ([`differential`]) | [`DifferentialOperator`](differential::DifferentialOperator) [`Reconstruction`](differential::Reconstruction) |
+//! | diffusion ([`flow`]) | [`heat_step`](flow::heat_step) [`mean_curvature_flow`](flow::mean_curvature_flow) |
+//! | smoothing ([`smooth`]) | [`uniform`](smooth::uniform) [`taubin`](smooth::taubin) [`tangential`](smooth::tangential) [`cotangent`](smooth::cotangent) [`implicit`](smooth::implicit) [`bilateral`](smooth::bilateral) |
 //!
 //! ```
 //! use dgp_laplace::smooth::{TaubinOptions, taubin};
@@ -15,7 +20,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod differential;
 mod error;
+pub mod flow;
+pub mod intrinsic;
+pub mod kernel;
+pub mod laplacian;
+mod nearest;
 pub mod smooth;
+mod solve;
+mod unit;
 
 pub use error::Error;

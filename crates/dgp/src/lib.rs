@@ -12,6 +12,9 @@
 //! | find shortest paths on edges | [`mesh::graph`] |
 //! | list what is wrong with faces, and mend it | [`mesh::defects`], [`mesh::repair()`] |
 //! | read and write files | [`io`] |
+//! | know how surfaces bend | [`mesh::curvature`] |
+//! | have the Laplacian of a mesh, of bad triangles, of points | [`laplace::laplacian`], [`laplace::intrinsic`] |
+//! | move a surface by its curvature, spread heat on it | [`laplace::flow`] |
 //! | remove noise | [`laplace::smooth`] |
 //! | draw pictures | [`view`] |
 //! | see how far a long computation is, and stop it | [`mesh::Progress`] |

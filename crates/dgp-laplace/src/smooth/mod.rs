@@ -4,17 +4,26 @@
 //! |---|---|---|
 //! | [`uniform`] | noise, and shape little by little | topology; the volume on request |
 //! | [`taubin`] | noise | shape: waves longer than the pass band |
+//! | [`cotangent`] | the same, by curvature | the spacing of vertices |
+//! | [`implicit`] | the same, in one large stable step | the spacing, with cotangent weights |
+//! | [`bilateral`] | noise | sharp edges |
 //! | [`tangential`] | uneven spacing | the surface: vertices slide in their tangent planes |
 //!
-//! All three take any mesh, keep its connectivity and attributes, and leave vertices of no face and
-//! those in the given set where they are. Stored normals are data like others: they stay as they are.
+//! All take any mesh, but for those with cotangents, which take triangles. They keep its connectivity and
+//! attributes, and leave vertices of no face and those in the given set where they are. Stored normals are data like others: they stay as they are.
 
+mod bilateral;
+mod cotangent;
+mod implicit;
 mod rings;
 mod run;
 mod tangential;
 mod taubin;
 mod uniform;
 
+pub use bilateral::{BilateralOptions, BilateralScheme, FaceNeighborhood, bilateral};
+pub use cotangent::{CotangentOptions, cotangent};
+pub use implicit::{ImplicitOptions, ImplicitWeight, implicit};
 pub use tangential::{NeighborWeight, TangentialOptions, tangential};
 pub use taubin::{TaubinOptions, taubin};
 pub use uniform::{UniformOptions, uniform};
@@ -60,5 +69,7 @@ pub struct SmoothReport {
     pub max_displacement: f64,
 }
 
+#[cfg(test)]
+mod curvature_tests;
 #[cfg(test)]
 mod tests;

@@ -178,8 +178,8 @@ impl Bisector {
                 // Across: far from both ends of the first direction.
                 0 => farthest_by(graph, |v| far[0][v].min(far[1][v])),
                 // Halfway between two directions.
-                1 => farthest_by(graph, |v| far[0][v].min(2 * far[1][v])),
-                _ => farthest_by(graph, |v| far[1][v].min(2 * far[0][v])),
+                1 => farthest_by(graph, |v| far[0][v].min(far[1][v].saturating_mul(2))),
+                _ => farthest_by(graph, |v| far[1][v].min(far[0][v].saturating_mul(2))),
             };
             if far[0][from as usize] == NONE {
                 break;
