@@ -161,8 +161,9 @@ impl Factors {
         let mut memory = MemBuffer::new(size);
         let values = SparseColMatRef::new(pattern, matrix.values());
         let stack = MemStack::new(&mut memory);
-        let factored =
-            symbolic.factorize_numeric_lu(&mut numeric, values, Par::Seq, stack, params).map(|_| ());
+        let factored = symbolic
+            .factorize_numeric_lu(&mut numeric, values, Par::Seq, stack, params)
+            .map(|_| ());
         match factored {
             Ok(()) => Ok(Some(Factors { symbolic, numeric })),
             Err(LuError::SymbolicSingular { .. }) => Ok(None),

@@ -8,7 +8,10 @@ use dgp_sparse::{
 };
 
 mod common;
-use common::{elements::{elements, icosphere}, grid, random};
+use common::{
+    elements::{elements, icosphere},
+    grid, random,
+};
 
 const BOTH: [Preconditioner; 2] = [Preconditioner::Jacobi, Preconditioner::IncompleteCholesky];
 
@@ -41,9 +44,18 @@ fn a_factor_that_fails_is_shifted() {
     // Kershaw's matrix: positive definite, but its incomplete factor has a negative pivot.
     let (a, b) = (3.0, 2.0);
     let triplets = [
-        (0, 0, a), (1, 1, a), (2, 2, a), (3, 3, a),
-        (0, 1, -b), (1, 0, -b), (1, 2, -b), (2, 1, -b), (2, 3, -b), (3, 2, -b),
-        (0, 3, b), (3, 0, b),
+        (0, 0, a),
+        (1, 1, a),
+        (2, 2, a),
+        (3, 3, a),
+        (0, 1, -b),
+        (1, 0, -b),
+        (1, 2, -b),
+        (2, 1, -b),
+        (2, 3, -b),
+        (3, 2, -b),
+        (0, 3, b),
+        (3, 0, b),
     ];
     let matrix = SparseMatrix::from_triplets(4, 4, &triplets).unwrap();
     let options = with(Preconditioner::IncompleteCholesky);

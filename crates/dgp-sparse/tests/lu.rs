@@ -73,7 +73,8 @@ fn singular_matrices_are_named() {
     let structural = SparseMatrix::from_triplets(3, 3, &triplets).unwrap();
     let error = factored(&structural).unwrap_err();
     assert!(matches!(error, Error::SingularLu { row: 1 | 2, column: 1 | 2 }), "{error}");
-    let empty = SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (0, 1, 1.0), (1, 1, 0.0)]).unwrap();
+    let empty =
+        SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (0, 1, 1.0), (1, 1, 0.0)]).unwrap();
     assert_eq!(factored(&empty).unwrap_err(), Error::EmptyRow { row: 1 });
     let empty = empty.transpose();
     let error = factored(&empty).unwrap_err();
@@ -96,8 +97,7 @@ const METHODS: [LeastSquaresMethod; 2] =
 fn a_line_is_fitted_as_by_hand() {
     // y = a + b x through noise: b = Σ(x − x̄)(y − ȳ) / Σ(x − x̄)².
     let n = 50_u32;
-    let triplets: Vec<_> =
-        (0..n).flat_map(|i| [(i, 0, 1.0), (i, 1, f64::from(i))]).collect();
+    let triplets: Vec<_> = (0..n).flat_map(|i| [(i, 0, 1.0), (i, 1, f64::from(i))]).collect();
     let matrix = SparseMatrix::from_triplets(n as usize, 2, &triplets).unwrap();
     let mut next = random(3);
     let y: Vec<f64> = (0..n).map(|i| 3.0 - 0.5 * f64::from(i) + next()).collect();
@@ -135,15 +135,8 @@ fn orthogonalization_keeps_digits_that_normal_equations_lose() {
 
 #[test]
 fn dependent_columns_are_named() {
-    let triplets = [
-        (0, 0, 1.0),
-        (1, 1, 1.0),
-        (2, 2, 3.0),
-        (3, 2, 4.0),
-        (2, 3, 6.0),
-        (3, 3, 8.0),
-        (4, 1, 2.0),
-    ];
+    let triplets =
+        [(0, 0, 1.0), (1, 1, 1.0), (2, 2, 3.0), (3, 2, 4.0), (2, 3, 6.0), (3, 3, 8.0), (4, 1, 2.0)];
     let twice = SparseMatrix::from_triplets(6, 4, &triplets).unwrap();
     for method in METHODS {
         let error = least_squares(&twice, &[1.0; 6], method, Progress::NONE).unwrap_err();

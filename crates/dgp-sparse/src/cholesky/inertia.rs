@@ -36,8 +36,7 @@ impl SymbolicCholesky {
         let pattern = SymbolicSparseColMatRef::new_unsorted_checked(n, n, starts, None, rows);
         let blocks = self.blocks();
         let params: Spec<LdltParams, f64> = default();
-        let size =
-            factorize_supernodal_numeric_ldlt_scratch::<u32, f64>(blocks, Par::Seq, params);
+        let size = factorize_supernodal_numeric_ldlt_scratch::<u32, f64>(blocks, Par::Seq, params);
         let mut memory = MemBuffer::new(size);
         let mut factor = vec![0.0; blocks.len_val()];
         factorize_supernodal_numeric_ldlt(

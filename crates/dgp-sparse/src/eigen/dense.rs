@@ -6,7 +6,9 @@ use faer::{
     dyn_stack::{MemBuffer, MemStack},
     linalg::{
         cholesky::llt::factor::{self, LltParams, LltRegularization},
-        evd::{ComputeEigenvectors, SelfAdjointEvdParams, self_adjoint_evd, self_adjoint_evd_scratch},
+        evd::{
+            ComputeEigenvectors, SelfAdjointEvdParams, self_adjoint_evd, self_adjoint_evd_scratch,
+        },
     },
     prelude::default,
 };
@@ -23,7 +25,8 @@ pub(super) fn symmetric_eigen(matrix: MatRef<'_, f64>) -> Option<(Vec<f64>, Mat<
     let mut values = Diag::zeros(n);
     let mut vectors = Mat::zeros(n, n);
     let stack = MemStack::new(&mut memory);
-    self_adjoint_evd(matrix, values.as_mut(), Some(vectors.as_mut()), Par::Seq, stack, params).ok()?;
+    self_adjoint_evd(matrix, values.as_mut(), Some(vectors.as_mut()), Par::Seq, stack, params)
+        .ok()?;
     let values: Vec<f64> = (0..n).map(|i| values.column_vector()[i]).collect();
     values.iter().all(|value| value.is_finite()).then_some((values, vectors))
 }

@@ -83,7 +83,10 @@ impl<'a> Lanczos<'a> {
             pencil,
             cholesky,
             basis,
-            weighted: Tall::new(n, if matches!(pencil.mass, OwnMass::Matrix(_)) { block } else { 0 }),
+            weighted: Tall::new(
+                n,
+                if matches!(pencil.mass, OwnMass::Matrix(_)) { block } else { 0 },
+            ),
             block,
             known: count,
             end: count,
@@ -133,7 +136,12 @@ impl<'a> Lanczos<'a> {
                 let residual =
                     ritz.residuals[..wanted.min(active)].iter().copied().fold(0.0, f64::max);
                 let solves = self.solves;
-                return Err(Error::EigenNotConverged { converged, count: wanted, residual, solves });
+                return Err(Error::EigenNotConverged {
+                    converged,
+                    count: wanted,
+                    residual,
+                    solves,
+                });
             }
             if full {
                 // Besides those wanted, as many as leave half of the rest for new directions.

@@ -45,7 +45,9 @@ impl Pencil {
         let masses: f64 = match &self.mass {
             OwnMass::Identity => n,
             OwnMass::Diagonal(masses) => masses.iter().sum(),
-            OwnMass::Matrix(mass) => mass.values().iter().sum::<f64>().max(mass.diagonal().iter().sum()),
+            OwnMass::Matrix(mass) => {
+                mass.values().iter().sum::<f64>().max(mass.diagonal().iter().sum())
+            }
         };
         let weight = trace / n / (2.0 * 3.0_f64.sqrt());
         let shift = 4.0 * std::f64::consts::PI * weight / masses;

@@ -191,7 +191,13 @@ impl<'a> ConjugateGradients<'a> {
     }
 
     /// The error for pᵀA p ≤ 0.
-    fn indefinite(&self, direction: &[f64], curvature: f64, iterations: usize, residual: f64) -> Error {
+    fn indefinite(
+        &self,
+        direction: &[f64],
+        curvature: f64,
+        iterations: usize,
+        residual: f64,
+    ) -> Error {
         let length = dot(direction, direction);
         let rounding = 8.0 * f64::EPSILON * self.matrix.row_norm() * length;
         if !(curvature < -rounding) {
@@ -228,7 +234,5 @@ fn add(factor: f64, x: &[f64], y: &mut [f64]) {
 
 /// xᵀ y, in blocks that do not depend on the number of threads.
 fn dot(x: &[f64], y: &[f64]) -> f64 {
-    parallel::sum(x.len(), |range| {
-        x[range.clone()].iter().zip(&y[range]).map(|(x, y)| x * y).sum()
-    })
+    parallel::sum(x.len(), |range| x[range.clone()].iter().zip(&y[range]).map(|(x, y)| x * y).sum())
 }

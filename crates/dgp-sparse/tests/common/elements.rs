@@ -97,8 +97,7 @@ pub(crate) fn flat_torus(n: u32) -> Elements {
     let squares = (0..n * n).map(|i| (i % n, i / n));
     let faces: Vec<[u32; 3]> = squares
         .flat_map(|(x, y)| {
-            let corners =
-                [index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)];
+            let corners = [index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)];
             [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]]
         })
         .collect();
