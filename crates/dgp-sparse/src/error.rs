@@ -209,6 +209,109 @@ pub enum Error {
         problem: &'static str,
     },
 
+    /// A row has no entry but zeros.
+    #[error("row {row} has no entry but zeros; leave it out, or fix its unknown")]
+    EmptyRow {
+        /// The first such row.
+        row: usize,
+    },
+
+    /// An unsymmetric matrix is singular to working precision.
+    #[error(
+        "the matrix is singular: a combination of rows, row {row} with the largest part, vanishes, and \
+         one of columns, column {column} with the largest part; fix this unknown, or add an equation"
+    )]
+    SingularLu {
+        /// The row with the largest part in a combination of rows that vanishes.
+        row: usize,
+        /// The column with the largest part in a combination of columns that vanishes.
+        column: usize,
+    },
+
+    /// A column is a combination of others, so that the unknowns are not unique.
+    #[error(
+        "column {column} depends on others: a combination of {columns} columns vanishes; fix this \
+         unknown, or add an equation for it"
+    )]
+    DependentColumn {
+        /// The column with the largest part in the combination.
+        column: usize,
+        /// How many columns have a part in it, or are connected to it.
+        columns: usize,
+    },
+
+    /// There are fewer equations than unknowns.
+    #[error("{rows} equations do not determine {columns} unknowns; add equations")]
+    Underdetermined {
+        /// The equations.
+        rows: usize,
+        /// The unknowns.
+        columns: usize,
+    },
+
+    /// An iteration has not reached the accuracy asked for.
+    #[error(
+        "after {iterations} iterations the residual is {residual} of the right-hand side; allow more \
+         iterations, or factor the matrix"
+    )]
+    NotConverged {
+        /// The iterations.
+        iterations: usize,
+        /// ‖b − A x‖ / ‖b‖.
+        residual: f64,
+    },
+
+    /// More eigenpairs are asked for than there are.
+    #[error("{count} eigenpairs are asked for, but a matrix of {rows} rows has only {rows}")]
+    TooManyEigenpairs {
+        /// How many are asked for.
+        count: usize,
+        /// The rows of the matrix.
+        rows: usize,
+    },
+
+    /// A mass is not positive, so that an eigenvalue would be infinite or negative.
+    #[error(
+        "row {row} has mass {mass}; masses must be positive: leave out what has none (a vertex on no \
+         face), or give it some"
+    )]
+    MassNotPositive {
+        /// The first such row.
+        row: usize,
+        /// Its mass.
+        mass: f64,
+    },
+
+    /// Eigenpairs are not as accurate as they should be.
+    #[error(
+        "after {solves} solves {converged} of {count} eigenpairs are accurate; the others have \
+         residuals of up to {residual}; allow more solves or a larger tolerance"
+    )]
+    EigenNotConverged {
+        /// How many are accurate.
+        converged: usize,
+        /// How many should be.
+        count: usize,
+        /// The largest residual of the others.
+        residual: f64,
+        /// How many systems were solved for them.
+        solves: usize,
+    },
+
+    /// There are smaller eigenvalues than those that were found.
+    #[error(
+        "{found} eigenvalues below {bound} were found, but there are {counted}; try another seed or \
+         shift"
+    )]
+    EigenvaluesMissed {
+        /// How many were found.
+        found: usize,
+        /// How many there are by Sylvester's law of inertia.
+        counted: usize,
+        /// Below which eigenvalue.
+        bound: f64,
+    },
+
     /// An option has a value outside its range.
     #[error("option `{name}` is {value}, but must be {expected}")]
     InvalidOption {

@@ -5,6 +5,10 @@
 //! | assemble, combine, multiply | [`SparseMatrix`] |
 //! | solve a symmetric positive definite system | [`Cholesky`], [`SymbolicCholesky`], [`CholeskyOptions`] |
 //! | some unknowns or equations are given | [`FixedSystem`], [`SoftSystem`], [`EqualitySystem`] |
+//! | solve an unsymmetric system | [`Lu`] |
+//! | more equations than unknowns | [`least_squares`] |
+//! | systems too large to factor | [`conjugate_gradients`], [`ConjugateGradients`] |
+//! | the smallest eigenvalues | [`eigenpairs`], [`EigenOptions`], [`Mass`] |
 //! | keep the factor sparse | [`Ordering`], [`elimination_order`] |
 //! | long computations | [`Progress`] |
 //!
@@ -21,7 +25,11 @@
 
 mod cholesky;
 mod constraint;
+mod eigen;
 mod error;
+mod iterative;
+mod least_squares;
+mod lu;
 mod matrix;
 mod order;
 mod parallel;
@@ -29,7 +37,14 @@ mod progress;
 
 pub use cholesky::{Cholesky, CholeskyOptions, SymbolicCholesky};
 pub use constraint::{EqualitySystem, FixedSystem, SoftSystem};
+pub use eigen::{EigenOptions, EigenReport, Eigenpairs, Mass, Shift, eigenpairs};
 pub use error::Error;
+pub use iterative::{
+    ConjugateGradients, ConjugateGradientsOptions, ConjugateGradientsReport, Preconditioner,
+    conjugate_gradients,
+};
+pub use least_squares::{LeastSquares, LeastSquaresMethod, least_squares};
+pub use lu::Lu;
 pub use matrix::{MAX_ENTRIES, SparseMatrix};
 pub use order::{Ordering, elimination_order};
 pub use progress::{Callback, Progress};

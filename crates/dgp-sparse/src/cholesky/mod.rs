@@ -17,6 +17,7 @@
 //!   Ng and Peyton, "Block sparse Cholesky algorithms", 1993.
 
 mod diagnose;
+mod inertia;
 mod solve;
 mod symbolic;
 
@@ -168,7 +169,7 @@ impl Cholesky {
 }
 
 /// The power of two next below `value`; 1 for what is not positive.
-fn power_of_two(value: f64) -> f64 {
+pub(crate) fn power_of_two(value: f64) -> f64 {
     let normal = f64::from_bits(value.to_bits() & f64::INFINITY.to_bits());
     if value > 0.0 && normal > 0.0 && (1.0 / normal).is_normal() { normal } else { 1.0 }
 }

@@ -1,6 +1,8 @@
 //! Matrices to try things on.
 #![allow(dead_code, reason = "not every test file uses all")]
 
+pub(crate) mod elements;
+
 use dgp_sparse::SparseMatrix;
 
 /// The Laplacian of a grid of `width` × `height` vertices.
