@@ -91,9 +91,7 @@ impl Peers {
         let program = compile("openmesh", &folder, &openmesh.arguments)?;
         let cgal = compile("cgal", &folder, &["-I/usr/include/eigen3".into()])?;
         let cholmod = match cholmod(&folder) {
-            Ok(program) => {
-                Some(Driver { name: "CHOLMOD".into(), program, first: Vec::new() })
-            }
+            Ok(program) => Some(Driver { name: "CHOLMOD".into(), program, first: Vec::new() }),
             Err(error) => {
                 eprintln!("without CHOLMOD: {error}\nget it by\n  {CHOLMOD_PACKAGES}");
                 None

@@ -133,11 +133,14 @@ impl Plot {
         let middle = [0.5 * (LEFT + RIGHT), 0.5 * (TOP + BOTTOM)];
         text(svg, [middle[0], BOTTOM + 48.0], "middle", &self.x_label);
         text(svg, [middle[0], TOP - 20.0], "middle", &self.title);
-        push(svg, format_args!(
-            "<text x=\"0\" y=\"0\" transform=\"translate(22 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-            middle[1],
-            escaped(&self.y_label)
-        ));
+        push(
+            svg,
+            format_args!(
+                "<text x=\"0\" y=\"0\" transform=\"translate(22 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                middle[1],
+                escaped(&self.y_label)
+            ),
+        );
     }
 
     /// The names of curves, if there are several.
@@ -147,11 +150,14 @@ impl Plot {
         }
         for (i, (curve, color)) in self.curves.iter().zip(COLORS.iter().cycle()).enumerate() {
             let at = TOP + 18.0 + 20.0 * i as f64;
-            push(svg, format_args!(
-                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"14\" height=\"4\" fill=\"{color}\"/>\n",
-                RIGHT - 170.0,
-                at - 6.0
-            ));
+            push(
+                svg,
+                format_args!(
+                    "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"14\" height=\"4\" fill=\"{color}\"/>\n",
+                    RIGHT - 170.0,
+                    at - 6.0
+                ),
+            );
             text(svg, [RIGHT - 148.0, at], "start", &curve.name);
         }
     }
@@ -232,9 +238,10 @@ fn draw_curve(
 ) {
     if marker == Marker::Dots {
         for [x, y] in points {
-            push(svg, format_args!(
-                "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3\" fill=\"{color}\"/>\n"
-            ));
+            push(
+                svg,
+                format_args!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3\" fill=\"{color}\"/>\n"),
+            );
         }
         return;
     }
@@ -246,19 +253,25 @@ fn draw_curve(
 }
 
 fn line(svg: &mut String, from: [f64; 2], to: [f64; 2], color: &str) {
-    push(svg, format_args!(
-        "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{color}\"/>\n",
-        from[0], from[1], to[0], to[1]
-    ));
+    push(
+        svg,
+        format_args!(
+            "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{color}\"/>\n",
+            from[0], from[1], to[0], to[1]
+        ),
+    );
 }
 
 fn text(svg: &mut String, at: [f64; 2], anchor: &str, words: &str) {
-    push(svg, format_args!(
-        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>\n",
-        at[0],
-        at[1],
-        escaped(words)
-    ));
+    push(
+        svg,
+        format_args!(
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>\n",
+            at[0],
+            at[1],
+            escaped(words)
+        ),
+    );
 }
 
 fn push(svg: &mut String, arguments: std::fmt::Arguments<'_>) {

@@ -51,9 +51,11 @@ pub(super) fn case(
     drivers.extend(case.openmesh.map(|operation| (peers.openmesh.clone(), operation)));
     drivers.extend(case.cgal.map(|operation| (peers.cgal.clone(), operation)));
     if let Some(cholmod) = &peers.cholmod {
-        drivers.extend(case.cholmod.iter().map(|&order| {
-            (cholmod.named(format!("{} {order}", cholmod.name)), order)
-        }));
+        drivers.extend(
+            case.cholmod
+                .iter()
+                .map(|&order| (cholmod.named(format!("{} {order}", cholmod.name)), order)),
+        );
     }
 
     let (rounds, repeat) = match effort {

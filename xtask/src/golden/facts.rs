@@ -61,8 +61,7 @@ pub(crate) fn ours(set: &IndexedFaceSet) -> Facts {
         }
         let angles = measure::corner_angles(&mesh);
         let regions = measure::corner_areas(&mesh, VertexArea::MixedVoronoi);
-        let corners: Vec<HalfedgeId> =
-            mesh.faces().flat_map(|f| mesh.face_halfedges(f)).collect();
+        let corners: Vec<HalfedgeId> = mesh.faces().flat_map(|f| mesh.face_halfedges(f)).collect();
         let mut column = |name: &str, f: &dyn Fn(HalfedgeId) -> f64| {
             facts.columns.insert(name.into(), corners.iter().map(|&h| f(h)).collect());
         };

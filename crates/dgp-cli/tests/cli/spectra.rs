@@ -14,8 +14,7 @@ fn off(mesh: &Mesh) -> String {
         writeln!(text, "{} {} {}", p.x, p.y, p.z).unwrap();
     }
     for f in mesh.faces() {
-        let corners: Vec<String> =
-            mesh.face_vertices(f).map(|v| v.index().to_string()).collect();
+        let corners: Vec<String> = mesh.face_vertices(f).map(|v| v.index().to_string()).collect();
         writeln!(text, "{} {}", corners.len(), corners.join(" ")).unwrap();
     }
     text
@@ -100,9 +99,9 @@ fn more_coefficients_compress_less_and_lose_less() {
 fn every_method_smooths() {
     let noisy = shapes::with_noise(shapes::icosphere(3).unwrap(), 0.05, 1).unwrap();
     let dgp = Dgp::new(&[("n.off", &off(&noisy))]);
-    for method in [
-        "uniform", "taubin", "cotan", "implicit", "bilateral", "flow", "conformal", "tangential",
-    ] {
+    for method in
+        ["uniform", "taubin", "cotan", "implicit", "bilateral", "flow", "conformal", "tangential"]
+    {
         let command = format!("smooth n.off -o out.off --method {method} --iterations 3");
         let (code, value) = dgp.json(&command);
         assert_eq!(code, 0, "{method}: {value}");

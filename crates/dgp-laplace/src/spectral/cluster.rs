@@ -92,10 +92,7 @@ impl<'a> Clusters<'a> {
                     let point = &self.points[i * self.dimension..(i + 1) * self.dimension];
                     let distances =
                         self.centers.chunks(self.dimension).map(|center| distance(point, center));
-                    distances
-                        .zip(0_u32..)
-                        .min_by(|a, b| a.0.total_cmp(&b.0))
-                        .unwrap_or((0.0, 0))
+                    distances.zip(0_u32..).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
                 })
                 .collect::<Vec<_>>()
         });

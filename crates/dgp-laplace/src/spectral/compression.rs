@@ -156,7 +156,12 @@ fn rounded(
     let [x, y, z] = [0, 1, 2].map(coordinate);
     let positions: Vec<DVec3> =
         (0..basis.vertex_count()).map(|v| DVec3::new(x[v], y[v], z[v])).collect();
-    Ok(Compressed { bits: entropy_bits(&whole), coefficients: whole, step, positions: positions.into() })
+    Ok(Compressed {
+        bits: entropy_bits(&whole),
+        coefficients: whole,
+        step,
+        positions: positions.into(),
+    })
 }
 
 /// What arithmetic coding needs for these numbers: n log₂ n − Σ m log₂ m over the m equal ones of each kind.

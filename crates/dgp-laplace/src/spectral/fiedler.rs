@@ -38,9 +38,8 @@ pub fn fiedler(
     masses: &VertexMap<f64>,
     progress: Progress<'_>,
 ) -> Result<Fiedler, Error> {
-    let rows: Vec<u32> = (0..masses.len() as u32)
-        .filter(|&row| masses.values()[row as usize] > 0.0)
-        .collect();
+    let rows: Vec<u32> =
+        (0..masses.len() as u32).filter(|&row| masses.values()[row as usize] > 0.0).collect();
     if rows.len() < 2 {
         return Err(Error::TooFewPoints { count: rows.len(), least: 2 });
     }

@@ -61,8 +61,7 @@ impl FunctionalMap {
         let mut worst = 0.0_f64;
         for i in 0..self.columns {
             for j in i..self.columns {
-                let sum: f64 =
-                    (0..self.rows()).map(|r| self.get(r, i) * self.get(r, j)).sum();
+                let sum: f64 = (0..self.rows()).map(|r| self.get(r, i) * self.get(r, j)).sum();
                 worst = worst.max((sum - f64::from(u8::from(i == j))).abs());
             }
         }
@@ -118,8 +117,10 @@ pub fn functional_map(
     let a: Vec<Vec<f64>> = from.iter().map(|f| unit(first, f)).collect();
     let b: Vec<Vec<f64>> = to.iter().map(|f| unit(second, f)).collect();
     let gram = |i: usize, j: usize| a.iter().map(|a| a[i] * a[j]).sum::<f64>();
-    let products: Vec<f64> =
-        (0..columns).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| gram(i, j)).collect();
+    let products: Vec<f64> = (0..columns)
+        .flat_map(|j| (0..columns).map(move |i| (i, j)))
+        .map(|(i, j)| gram(i, j))
+        .collect();
     let last = |basis: &Eigenbasis| basis.values().last().copied().unwrap_or(0.0);
     let scale = last(first).max(last(second));
     let mut entries = Vec::with_capacity(rows * columns);
@@ -132,9 +133,8 @@ pub fn functional_map(
             // A trace of μ where the gap is nothing, so that the system has one solution.
             matrix[j * columns + j] += mu * (gap * gap).max(1e-6);
         }
-        let rhs: Vec<f64> = (0..columns)
-            .map(|j| a.iter().zip(&b).map(|(a, b)| a[j] * b[i]).sum())
-            .collect();
+        let rhs: Vec<f64> =
+            (0..columns).map(|j| a.iter().zip(&b).map(|(a, b)| a[j] * b[i]).sum()).collect();
         entries.extend(solve_dense(columns, &matrix, &rhs)?);
     }
     Ok(FunctionalMap { columns, entries })
@@ -193,10 +193,8 @@ pub(super) fn nearest(
     let (k, rows) = (map.columns, map.rows());
     // Images of all points, and half their squares: |p − q|² / 2 = |p|²/2 − p·q + …
     let images: Vec<f64> = first.chunks(k.max(1)).flat_map(|point| map.apply(point)).collect();
-    let halves: Vec<f64> = images
-        .chunks(rows.max(1))
-        .map(|p| 0.5 * p.iter().map(|x| x * x).sum::<f64>())
-        .collect();
+    let halves: Vec<f64> =
+        images.chunks(rows.max(1)).map(|p| 0.5 * p.iter().map(|x| x * x).sum::<f64>()).collect();
     assert!(!halves.is_empty() || wanted.is_empty(), "points to choose from");
     let block = 64;
     let blocks = parallel::map_blocks(wanted.len(), block, |range| {

@@ -82,9 +82,8 @@ pub fn partition(
 ) -> Result<Partition, Error> {
     assert_eq!(masses.len(), laplacian.rows(), "a mass per row");
     check_weights(laplacian)?;
-    let rows: Vec<u32> = (0..masses.len() as u32)
-        .filter(|&row| masses.values()[row as usize] > 0.0)
-        .collect();
+    let rows: Vec<u32> =
+        (0..masses.len() as u32).filter(|&row| masses.values()[row as usize] > 0.0).collect();
     if count == 0 || count > rows.len() {
         let expected = "between 1 and the number of vertices with mass";
         return Err(Error::option("count", count as f64, expected));
@@ -97,8 +96,7 @@ pub fn partition(
         PartitionMethod::Bisection => bisections(laplacian, masses, &rows, count, progress)?,
         PartitionMethod::Clusters => {
             let eigen = EigenOptions::default();
-            let basis =
-                Eigenbasis::new(laplacian, masses, count, &eigen, progress.part(0.0, 0.8))?;
+            let basis = Eigenbasis::new(laplacian, masses, count, &eigen, progress.part(0.0, 0.8))?;
             let all = basis.rows(count);
             let points: Vec<f64> = rows
                 .iter()
@@ -135,8 +133,8 @@ fn bisections(
         let order = slow_order(laplacian, masses, &part)?;
         // As much mass as its share, but at least a row for each part to come.
         let mass = |row: u32| masses.values()[row as usize];
-        let wanted = order.iter().map(|&row| mass(row)).sum::<f64>() * low_share as f64
-            / share as f64;
+        let wanted =
+            order.iter().map(|&row| mass(row)).sum::<f64>() * low_share as f64 / share as f64;
         let (mut at, mut sum) = (0, 0.0);
         while at < order.len() && sum + 0.5 * mass(order[at]) < wanted {
             sum += mass(order[at]);

@@ -177,8 +177,7 @@ fn separate_parts_are_cut_for_nothing() {
 fn negative_weights_are_not_cut() {
     let laplacian = dgp_sparse::SparseMatrix::from_edges(3, &[(0, 1, 1.0), (1, 2, -0.5)]).unwrap();
     let ones = VertexMap::filled(3, 1.0);
-    let result =
-        partition(&laplacian, &ones, 2, &PartitionOptions::default(), Progress::NONE);
+    let result = partition(&laplacian, &ones, 2, &PartitionOptions::default(), Progress::NONE);
     assert!(matches!(result, Err(Error::NegativeWeight { weight, .. }) if weight == -0.5));
 }
 

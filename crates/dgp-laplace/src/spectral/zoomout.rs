@@ -76,7 +76,8 @@ pub fn zoomout(
         return Err(Error::option("samples", count as f64, expected));
     }
     // Spread over all numbers.
-    let samples: Vec<u32> = (0..count).map(|i| (i as u64 * n as u64 / count as u64) as u32).collect();
+    let samples: Vec<u32> =
+        (0..count).map(|i| (i as u64 * n as u64 / count as u64) as u32).collect();
     let mut current = map.clone();
     let mut points = nearest_of(first, second, &current, &samples, Progress::NONE)?;
     let mut changed = Vec::new();
@@ -127,8 +128,7 @@ fn sampled_map(
     let phi: Vec<Vec<f64>> = (0..k).map(|i| at(second, i, samples)).collect();
     let psi: Vec<Vec<f64>> = (0..k).map(|j| at(first, j, points)).collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let gram: Vec<f64> =
-        phi.iter().flat_map(|a| phi.iter().map(move |b| dot(a, b))).collect();
+    let gram: Vec<f64> = phi.iter().flat_map(|a| phi.iter().map(move |b| dot(a, b))).collect();
     let rhs: Vec<f64> = psi.iter().flat_map(|b| phi.iter().map(move |a| dot(a, b))).collect();
     let columns = solve_dense(k, &gram, &rhs)?;
     let entries = (0..k).flat_map(|i| columns.chunks(k).map(move |column| column[i])).collect();

@@ -31,7 +31,11 @@ impl SymbolicCholesky {
 
     /// First column, number of columns, number of rows (those of the diagonal counted) and values of
     /// a block.
-    pub(super) fn block<'a>(&self, factor: &'a [f64], block: usize) -> (usize, usize, usize, &'a [f64]) {
+    pub(super) fn block<'a>(
+        &self,
+        factor: &'a [f64],
+        block: usize,
+    ) -> (usize, usize, usize, &'a [f64]) {
         let blocks = self.blocks();
         let first = blocks.supernode_begin()[block] as usize;
         let columns = blocks.supernode_end()[block] as usize - first;
