@@ -103,7 +103,7 @@ impl Curvature {
             report.total_gaussian,
             report.gauss_bonnet_error,
             report.euler_characteristic,
-            words(&report.mean),
+            words(report.mean.as_ref()),
         );
         session.finish(&summary, &to_json(&report))?;
         Ok(ExitCode::SUCCESS)
@@ -135,24 +135,23 @@ struct Found {
     report: CurvatureReport,
 }
 
-fn words(range: &Option<Range>) -> String {
-    range.as_ref().map_or_else(
+fn words(range: Option<&Range>) -> String {
+    range.map_or_else(
         || "of nothing".to_owned(),
         |range| format!("from {:.4e} to {:.4e}", range.min, range.max),
     )
 }
 
 fn to_json(report: &CurvatureReport) -> Value {
-    let range = |range: &Option<Range>| {
-        range.as_ref().map(|r| json!({"min": r.min, "mean": r.mean, "max": r.max}))
-    };
+    let range =
+        |range: Option<&Range>| range.map(|r| json!({"min": r.min, "mean": r.mean, "max": r.max}));
     json!({
         "total_gaussian": report.total_gaussian,
         "euler_characteristic": report.euler_characteristic,
         "gauss_bonnet_error": report.gauss_bonnet_error,
-        "gaussian": range(&report.gaussian),
-        "mean": range(&report.mean),
-        "maximum": range(&report.max),
-        "minimum": range(&report.min),
+        "gaussian": range(report.gaussian.as_ref()),
+        "mean": range(report.mean.as_ref()),
+        "maximum": range(report.max.as_ref()),
+        "minimum": range(report.min.as_ref()),
     })
 }

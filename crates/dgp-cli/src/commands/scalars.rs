@@ -48,7 +48,7 @@ impl Pictured {
             let style = Style { paint: Paint::Scalars(scalars), ..Style::default() };
             Panel::new(label, Model { style, ..Model::new(mesh) })
         });
-        let scene = Scene { panels: panels.collect(), ..Scene::default() };
+        let scene = Scene { panels: panels.collect() };
         let png = session.run("drawing", |progress| {
             let (image, _) = render(&scene, &RenderOptions::default(), progress)?;
             Ok::<_, Error>(image.to_png())

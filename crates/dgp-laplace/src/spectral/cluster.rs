@@ -109,7 +109,9 @@ impl<'a> Clusters<'a> {
     fn fill_empty(&self, nearest: &mut [(f64, u32)]) {
         let count = self.centers.len() / self.dimension;
         let mut sizes = vec![0; count];
-        nearest.iter().for_each(|&(_, label)| sizes[label as usize] += 1);
+        for &(_, label) in &*nearest {
+            sizes[label as usize] += 1;
+        }
         for empty in 0..count {
             if sizes[empty] > 0 {
                 continue;
@@ -139,7 +141,9 @@ impl<'a> Clusters<'a> {
             center.iter_mut().zip(point).for_each(|(c, p)| *c += weight * p);
         }
         for (center, total) in self.centers.chunks_mut(self.dimension).zip(totals) {
-            center.iter_mut().for_each(|c| *c /= total);
+            for c in center {
+                *c /= total;
+            }
         }
     }
 }

@@ -110,7 +110,9 @@ pub fn functional_map(
         let mut c = basis.coefficients(f.values());
         let norm = c.iter().map(|c| c * c).sum::<f64>().sqrt();
         if norm > 0.0 {
-            c.iter_mut().for_each(|c| *c /= norm);
+            for c in &mut c {
+                *c /= norm;
+            }
         }
         c
     };

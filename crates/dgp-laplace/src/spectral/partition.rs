@@ -124,7 +124,9 @@ fn bisections(
     let mut done = 0;
     while let Some((part, share)) = waiting.pop() {
         if share == 1 {
-            part.iter().for_each(|&row| labels[row as usize] = done);
+            for &row in &part {
+                labels[row as usize] = done;
+            }
             done += 1;
             progress.report(f64::from(done) / count as f64)?;
             continue;
@@ -201,10 +203,10 @@ fn report(
     let part_masses: Vec<f64> = members.iter().map(mass).collect();
     let mut leaving = vec![0.0; members.len()];
     for (i, j, entry) in laplacian.triplets() {
-        if let (Some(a), Some(b)) = (part.values()[i], part.values()[j]) {
-            if a != b {
-                leaving[a as usize] -= entry;
-            }
+        if let (Some(a), Some(b)) = (part.values()[i], part.values()[j])
+            && a != b
+        {
+            leaving[a as usize] -= entry;
         }
     }
     Partition {
