@@ -69,6 +69,9 @@ const RIGHT: f64 = 780.0;
 const TOP: f64 = 50.0;
 const BOTTOM: f64 = 430.0;
 
+/// Numbers larger than this are left out, since differences of two of them may not be numbers.
+const LARGEST: f64 = 1e300;
+
 /// Colors that the color-blind tell apart (Okabe and Ito 2008).
 const COLORS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
@@ -172,7 +175,7 @@ impl Curve {
 
 impl Axis {
     fn has_place(self, value: f64) -> bool {
-        value.is_finite() && (self == Axis::Linear || value > 0.0)
+        value.abs() <= LARGEST && (self == Axis::Linear || value > 0.0)
     }
 
     /// What grows evenly along the axis.
