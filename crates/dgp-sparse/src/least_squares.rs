@@ -117,13 +117,10 @@ fn normal_equations(
     let cholesky =
         Cholesky::new(&gram, &options, progress.part(0.0, 0.8)).map_err(|error| match error {
             // AᵀA is semidefinite, so that rounding is what makes a pivot negative.
-            Error::Singular { row, size, .. } => {
-                Error::DependentColumn { column: row, columns: size }
-            }
             Error::NotPositiveDefinite { row, .. } => {
                 Error::DependentColumn { column: row, columns: n }
             }
-            Error::ConstantNullSpace { row, size } => {
+            Error::Singular { row, size, .. } | Error::ConstantNullSpace { row, size } => {
                 Error::DependentColumn { column: row, columns: size }
             }
             error => error,
@@ -184,7 +181,8 @@ fn orthogonal(
         solution.extend_from_slice(&column[..n]);
     }
     let probe = solution.split_off(solution.len() - n);
-    if !(matrix.row_norm() * largest(&probe) <= DEPENDENT) {
+    let independent = matrix.row_norm() * largest(&probe) <= DEPENDENT;
+    if !independent {
         return Err(dependent_column(matrix, &probe));
     }
     Ok(solution)
@@ -217,7 +215,9 @@ fn vanishing(matrix: &SparseMatrix) -> Result<Vec<f64>, Error> {
     for _ in 0..3 {
         cholesky.substitute(&mut x)?;
         let size = largest(&x);
-        x.iter_mut().for_each(|x| *x /= size);
+        for x in &mut x {
+            *x /= size;
+        }
     }
     Ok(x)
 }
@@ -239,7 +239,8 @@ fn checked(
         let gradient = largest(&matrix.transpose_product(&residual));
         let size = norm * (norm * largest(x) + largest(b));
         let gradient = if size == 0.0 { 0.0 } else { gradient / size };
-        if !(gradient <= REFUSE) {
+        let least = gradient <= REFUSE;
+        if !least {
             return Err(Error::Inaccurate { residual: gradient });
         }
         residuals.push(residual.iter().map(|r| r * r).sum::<f64>().sqrt());

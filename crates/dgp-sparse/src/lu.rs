@@ -68,9 +68,8 @@ impl Lu {
         matrix.check_finite()?;
         check_no_empty_line(matrix)?;
         let n = matrix.rows();
-        let factors = match Factors::of(matrix)? {
-            Some(factors) => factors,
-            None => return Err(dependence(matrix)?),
+        let Some(factors) = Factors::of(matrix)? else {
+            return Err(dependence(matrix)?);
         };
         progress.report(0.9)?;
         let lu = Lu { matrix: matrix.clone(), factors };
@@ -79,7 +78,8 @@ impl Lu {
         let mut x = rhs.clone();
         lu.factors.solve(&mut x);
         let growth = matrix.row_norm() * largest(&x) / largest(&rhs);
-        if !(growth <= SINGULAR) && n > 0 {
+        let regular = growth <= SINGULAR;
+        if !regular && n > 0 {
             return Err(dependence(matrix)?);
         }
         progress.report(1.0)?;
@@ -118,7 +118,8 @@ impl Lu {
     fn solve_checked(&self, rhs: &[f64], x: &mut [f64]) -> Result<(), Error> {
         self.factors.solve(x);
         let (mut residual, mut error) = self.residual(x, rhs);
-        if !(error <= REFINE) {
+        let exact = error <= REFINE;
+        if !exact {
             self.factors.solve(&mut residual);
             let refined: Vec<f64> = x.iter().zip(&residual).map(|(x, dx)| x + dx).collect();
             let (_, after) = self.residual(&refined, rhs);
@@ -229,7 +230,9 @@ fn dependence(matrix: &SparseMatrix) -> Result<Error, Error> {
         for _ in 0..3 {
             solve(&mut x);
             let size = largest(&x);
-            x.iter_mut().for_each(|x| *x /= size);
+            for x in &mut x {
+                *x /= size;
+            }
         }
         x.iter().position(|x| x.abs() >= 1.0 - 1e-6).unwrap_or(0)
     };

@@ -55,7 +55,8 @@ impl SymbolicCholesky {
             let (_, columns, rows, values) = self.block(&factor, block);
             for j in 0..columns {
                 let pivot = values[j * (rows + 1)];
-                if !(pivot.abs() <= GROWTH * largest) || pivot == 0.0 {
+                let certain = pivot.abs() <= GROWTH * largest && pivot != 0.0;
+                if !certain {
                     return None;
                 }
                 negative += usize::from(pivot < 0.0);

@@ -211,7 +211,9 @@ fn orient(x: &mut [f64]) {
     let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let first = x.iter().find(|x| x.abs() >= (1.0 - 1e-6) * largest);
     if first.is_some_and(|&x| x < 0.0) {
-        x.iter_mut().for_each(|x| *x = -*x);
+        for x in x {
+            *x = -*x;
+        }
     }
 }
 

@@ -44,7 +44,8 @@ pub(super) fn triangular_root(matrix: MatRef<'_, f64>, least: f64) -> Option<(Ma
     factor::cholesky_in_place(root.as_mut(), regularization, Par::Seq, stack, params).ok()?;
     for j in 0..n {
         (0..j).for_each(|i| root[(i, j)] = 0.0);
-        if !(root[(j, j)].powi(2) > least * matrix[(j, j)]) {
+        let remains = root[(j, j)].powi(2) > least * matrix[(j, j)];
+        if !remains {
             return None;
         }
     }

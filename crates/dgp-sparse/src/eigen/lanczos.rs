@@ -113,8 +113,8 @@ impl<'a> Lanczos<'a> {
         maximum: usize,
         progress: Progress<'_>,
     ) -> Result<Found, Error> {
-        let enough = wanted + wanted / 5 + self.block;
-        let often = (wanted / 8).max(2 * self.block);
+        let enough = wanted + wanted / 2 + 2 * self.block;
+        let often = (wanted / 5).max(2 * self.block);
         let mut next_look = enough;
         let expected = 2 * wanted + 4 * self.block;
         loop {
@@ -145,7 +145,7 @@ impl<'a> Lanczos<'a> {
             }
             if full {
                 // Besides those wanted, as many as leave half of the rest for new directions.
-                let kept = (wanted.max(converged) + active) / 2;
+                let kept = wanted.max(converged).midpoint(active);
                 self.restart(&ritz, kept.min(active - self.block));
                 next_look = 0;
             }
@@ -234,8 +234,8 @@ impl<'a> Lanczos<'a> {
         let before = all.subrows(along.len(), self.block);
         let mut gram = before.to_owned();
         multiply(gram.as_mut(), Accum::Add, amounts.transpose(), amounts.as_ref(), -1.0);
-        let cancelled = (0..self.block).any(|j| !(gram[(j, j)] > 1e-10 * before[(j, j)]));
-        let root = if cancelled { None } else { triangular_root(gram.as_ref(), WELL_CONDITIONED) };
+        let clear = (0..self.block).all(|j| gram[(j, j)] > 1e-10 * before[(j, j)]);
+        let root = if clear { triangular_root(gram.as_ref(), WELL_CONDITIONED) } else { None };
         if let Some((root, inverse)) = root {
             self.basis.subtract(along, amounts.as_ref(), self.end, inverse.transpose());
             return (amounts, root.transpose().to_owned());
@@ -265,8 +265,10 @@ impl<'a> Lanczos<'a> {
                 root[(i % j, j)] += self.take_from(&mut column, other);
             }
             let left = self.length(&column);
-            let replaced = !(left > 1e-13 * size);
-            if replaced {
+            let remains = left > 1e-13 * size;
+            if remains {
+                root[(j, j)] = left;
+            } else {
                 column = self.random.vector(n);
                 let before = self.basis.columns(0..self.end);
                 for _ in 0..3 {
@@ -274,11 +276,11 @@ impl<'a> Lanczos<'a> {
                         self.take_from(&mut column, other);
                     }
                 }
-            } else {
-                root[(j, j)] = left;
             }
-            let factor = 1.0 / if replaced { self.length(&column) } else { left };
-            column.iter_mut().for_each(|x| *x *= factor);
+            let factor = 1.0 / if remains { left } else { self.length(&column) };
+            for x in &mut column {
+                *x *= factor;
+            }
             done.push(column);
         }
         self.basis.set(self.end, &done.concat());

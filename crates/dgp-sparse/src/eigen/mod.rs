@@ -201,7 +201,7 @@ fn check(
             mass.diagonal()
         }
     };
-    if let Some(row) = masses.iter().position(|&mass| !(mass > 0.0)) {
+    if let Some(row) = masses.iter().position(|&mass| mass <= 0.0) {
         return Err(Error::MassNotPositive { row, mass: masses[row] });
     }
     if count > rows {

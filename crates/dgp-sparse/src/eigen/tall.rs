@@ -82,11 +82,13 @@ impl Tall {
 
     /// Aᵀ M B for two ranges of columns A and B.
     pub(super) fn project(&self, a: Range<usize>, b: Range<usize>, weight: Weight<'_>) -> Mat<f64> {
-        self.sum_of_panels(a.len(), b.len(), |product, panel, index| {
+        // Bᵀ M A: the left factor is what the kernel copies, and B is the small one.
+        let transposed = self.sum_of_panels(b.len(), a.len(), |product, panel, index| {
             let weighted = self.weighted(panel, b.clone(), index, weight);
-            let left = view(panel, self.height, a.clone());
-            multiply(product, Accum::Replace, left.transpose(), weighted.as_ref(), 1.0);
-        })
+            let right = view(panel, self.height, a.clone());
+            multiply(product, Accum::Replace, weighted.transpose(), right, 1.0);
+        });
+        transposed.transpose().to_owned()
     }
 
     /// The largest |Aᵀ M A − I| for all columns A.

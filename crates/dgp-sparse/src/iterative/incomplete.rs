@@ -63,10 +63,11 @@ impl IncompleteCholesky {
 
     /// Whether all pivots are positive.
     fn factor(&mut self, diagonal: &[f64]) -> bool {
-        for k in 0..diagonal.len() {
+        for (k, &original) in diagonal.iter().enumerate() {
             let (start, end) = (self.starts[k] as usize, self.starts[k + 1] as usize);
             let pivot = self.values[start];
-            if !(pivot > LEAST_PIVOT * diagonal[k]) {
+            let remains = pivot > LEAST_PIVOT * original;
+            if !remains {
                 return false;
             }
             // Of the columns named by this one, what it shares with them.

@@ -114,7 +114,7 @@ impl<'a> ConjugateGradients<'a> {
             return Err(Error::option("tolerance", options.tolerance, "between 0 and 1"));
         }
         let diagonal = matrix.diagonal();
-        if let Some(row) = diagonal.iter().position(|&value| !(value > 0.0)) {
+        if let Some(row) = diagonal.iter().position(|&value| value <= 0.0) {
             let diagonal = diagonal[row];
             return Err(Error::NotPositiveDefinite { row, pivot: diagonal, diagonal });
         }
@@ -170,7 +170,8 @@ impl<'a> ConjugateGradients<'a> {
             best = size.min(best);
             self.matrix.transpose_product_into(&direction, &mut product);
             let curvature = dot(&direction, &product);
-            if !(curvature > 0.0) {
+            let convex = curvature > 0.0;
+            if !convex {
                 return Err(self.indefinite(&direction, curvature, iteration, best));
             }
             let step = square / curvature;
@@ -200,7 +201,7 @@ impl<'a> ConjugateGradients<'a> {
     ) -> Error {
         let length = dot(direction, direction);
         let rounding = 8.0 * f64::EPSILON * self.matrix.row_norm() * length;
-        if !(curvature < -rounding) {
+        if curvature.is_nan() || curvature >= -rounding {
             // Null within rounding: the right-hand side has a part that no x yields.
             return Error::NotConverged { iterations, residual };
         }
