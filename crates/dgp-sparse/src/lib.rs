@@ -10,6 +10,7 @@
 //! | systems too large to factor | [`conjugate_gradients`], [`ConjugateGradients`] |
 //! | the smallest eigenvalues | [`eigenpairs`], [`EigenOptions`], [`Mass`] |
 //! | keep the factor sparse | [`Ordering`], [`elimination_order`] |
+//! | read and write | [`SparseMatrix::from_matrix_market`], [`SparseMatrix::to_matrix_market`] |
 //! | long computations | [`Progress`] |
 //!
 //! ```
@@ -31,6 +32,7 @@ mod iterative;
 mod least_squares;
 mod lu;
 mod matrix;
+mod matrix_market;
 mod order;
 mod parallel;
 mod progress;

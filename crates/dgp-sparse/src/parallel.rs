@@ -8,26 +8,6 @@ use rayon::prelude::*;
 /// The fewest values that are worth a task of their own.
 const BLOCK: usize = 4096;
 
-/// Both results, computed side by side where there are threads.
-pub(crate) fn join<A: Send, B: Send>(
-    a: impl FnOnce() -> A + Send,
-    b: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    #[cfg(feature = "rayon")]
-    return rayon::join(a, b);
-    #[cfg(not(feature = "rayon"))]
-    (a(), b())
-}
-
-/// The value `f(i)` for each `i` in `0..len`.
-pub(crate) fn map<T: Send>(len: usize, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-    #[cfg(feature = "rayon")]
-    if len > BLOCK {
-        return (0..len).into_par_iter().with_min_len(BLOCK).map(f).collect();
-    }
-    (0..len).map(f).collect()
-}
-
 /// Calls `f(first index, chunk)` on consecutive chunks of `values`, each of `block` but the last, and
 /// returns the results in order.
 pub(crate) fn map_chunks<T: Send, R: Send>(

@@ -7,8 +7,7 @@ impl SymbolicCholesky {
     /// The place of the first pivot that is not positive beyond rounding, if there is one.
     ///
     /// `failed` is the place where the factorization stopped. A pivot is the diagonal entry less the
-    /// squares of the entries before it. Each of some √m roundings of m entries may be off by an ulp
-    /// of the diagonal; what remains of it beyond that is noise.
+    /// squares of the entries before it; what remains of it after cancellation is [noise](Self::noise).
     pub(super) fn worst_pivot(
         &self,
         lower: &[f64],
@@ -18,15 +17,21 @@ impl SymbolicCholesky {
         if failed.is_some() {
             return failed;
         }
-        let noise = 8.0 * f64::EPSILON * (lower.len() as f64).sqrt();
+        let noise = self.noise();
         (0..self.blocks().n_supernodes()).find_map(|block| {
             let (first, columns, rows, values) = self.block(factor, block);
             (0..columns).find_map(|j| {
                 let pivot = values[j * (rows + 1)].powi(2);
                 let diagonal = lower[self.lower_pattern().0[first + j] as usize];
-                (!(pivot > noise * diagonal)).then_some(first + j)
+                (pivot.is_nan() || pivot <= noise * diagonal).then_some(first + j)
             })
         })
+    }
+
+    /// The part of a diagonal entry that rounding may leave where nothing should remain: the errors of
+    /// all operations that lead to the last pivot, added up as if they were random.
+    fn noise(&self) -> f64 {
+        4.0 * f64::EPSILON * self.operations().sqrt()
     }
 
     /// First column, number of columns, number of rows (those of the diagonal counted) and values of
@@ -57,7 +62,7 @@ impl Cholesky {
         let entry = values[(place - first) * (rows + 1)];
         // A pivot that was accepted has been replaced by its root.
         let pivot = self.scale * if entry > 0.0 { entry * entry } else { entry };
-        let noise = 8.0 * f64::EPSILON * (self.lower.len() as f64).sqrt();
+        let noise = symbolic.noise();
         if pivot.abs() > noise * diagonal.abs() || diagonal < 0.0 {
             return Error::NotPositiveDefinite { row, pivot, diagonal };
         }

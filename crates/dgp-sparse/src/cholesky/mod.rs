@@ -21,7 +21,7 @@ mod inertia;
 mod solve;
 mod symbolic;
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use faer::{
     Par, Spec,
@@ -30,9 +30,7 @@ use faer::{
     prelude::default,
     sparse::{
         SparseColMatRef, SymbolicSparseColMatRef,
-        linalg::cholesky::supernodal::{
-            factorize_supernodal_numeric_llt, factorize_supernodal_numeric_llt_scratch,
-        },
+        linalg::cholesky::supernodal::factorize_supernodal_numeric_llt,
     },
 };
 
@@ -61,7 +59,7 @@ pub struct CholeskyOptions {
 /// assert!((x[0] - 0.625).abs() < 1e-15);
 /// # Ok::<(), dgp_sparse::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Cholesky {
     symbolic: Arc<SymbolicCholesky>,
     /// The lower triangle of P A Pᵀ / scale, in the places that the symbolic part lists.
@@ -82,7 +80,9 @@ impl Cholesky {
         progress: Progress<'_>,
     ) -> Result<Cholesky, Error> {
         let symbolic = SymbolicCholesky::new(matrix, options, progress.part(0.0, 0.5))?;
-        Cholesky::with_symbolic(&Arc::new(symbolic), matrix, progress.part(0.5, 1.0))
+        let mut cholesky = Cholesky::unfactored(&Arc::new(symbolic));
+        cholesky.factor_symmetric(matrix, progress.part(0.5, 1.0))?;
+        Ok(cholesky)
     }
 
     /// Factors `matrix`, whose pattern is the one that was analyzed.
@@ -91,29 +91,42 @@ impl Cholesky {
         matrix: &SparseMatrix,
         progress: Progress<'_>,
     ) -> Result<Cholesky, Error> {
-        let mut cholesky = Cholesky {
+        let mut cholesky = Cholesky::unfactored(symbolic);
+        cholesky.refactor(matrix, progress)?;
+        Ok(cholesky)
+    }
+
+    fn unfactored(symbolic: &Arc<SymbolicCholesky>) -> Cholesky {
+        Cholesky {
             symbolic: Arc::clone(symbolic),
             lower: Vec::new(),
             scale: 1.0,
             norm: 0.0,
             factor: Vec::new(),
-        };
-        cholesky.refactor(matrix, progress)?;
-        Ok(cholesky)
+        }
     }
 
     /// Factors another matrix with the same pattern.
     ///
-    /// After an error the factorization is of no matrix: solving with it fails.
+    /// After [`Error::Cancelled`], or where this matrix does not fit, the factorization is the one before;
+    /// where it has no factor, solving fails from now on.
     pub fn refactor(&mut self, matrix: &SparseMatrix, progress: Progress<'_>) -> Result<(), Error> {
-        progress.report(0.0)?;
         self.symbolic.check_pattern(matrix)?;
-        matrix.check_finite()?;
         matrix.check_symmetric()?;
+        self.factor_symmetric(matrix, progress)
+    }
+
+    /// Factors a matrix that is known to be symmetric and to have the pattern.
+    fn factor_symmetric(
+        &mut self,
+        matrix: &SparseMatrix,
+        progress: Progress<'_>,
+    ) -> Result<(), Error> {
+        matrix.check_finite()?;
+        progress.report(0.0)?;
         self.scale = power_of_two(matrix.diagonal().into_iter().fold(0.0, f64::max));
         self.lower = self.symbolic.lower_values(matrix, 1.0 / self.scale);
         self.norm = matrix.row_norm() / self.scale;
-        progress.report(0.1)?;
         let failed = self.factor().err();
         match self.symbolic.worst_pivot(&self.lower, &self.factor, failed) {
             Some(place) => {
@@ -121,7 +134,7 @@ impl Cholesky {
                 self.factor.fill(f64::NAN);
                 Err(error)
             }
-            None => progress.report(1.0),
+            None => Ok(()),
         }
     }
 
@@ -130,8 +143,10 @@ impl Cholesky {
         let symbolic = &*self.symbolic;
         let n = symbolic.rows();
         let blocks = symbolic.blocks();
-        self.factor.clear();
-        self.factor.resize(blocks.len_val(), 0.0);
+        if self.factor.len() != blocks.len_val() {
+            // Zeros that the system hands out are not written twice.
+            self.factor = vec![0.0; blocks.len_val()];
+        }
         if n == 0 {
             return Ok(());
         }
@@ -140,8 +155,7 @@ impl Cholesky {
         let lower = SparseColMatRef::new(pattern, &self.lower);
         // One thread: on blocks of this size more of them lose.
         let params: Spec<LltParams, f64> = default();
-        let size = factorize_supernodal_numeric_llt_scratch::<u32, f64>(blocks, Par::Seq, params);
-        let mut memory = MemBuffer::new(size);
+        let mut memory = MemBuffer::new(symbolic.scratch());
         let factored = factorize_supernodal_numeric_llt(
             &mut self.factor,
             lower,
@@ -165,6 +179,12 @@ impl Cholesky {
     /// The number of rows.
     pub fn rows(&self) -> usize {
         self.symbolic.rows()
+    }
+}
+
+impl fmt::Debug for Cholesky {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Cholesky({:?})", self.symbolic)
     }
 }
 

@@ -89,8 +89,8 @@ impl Cholesky {
         let mut x = rhs.clone();
         self.substitute_permuted(&mut x);
         let (mut residual, mut error) = self.residual(&x, &rhs);
-        // Iterative refinement; NaN compares as too large.
-        if !(error <= REFINE) {
+        // Iterative refinement.
+        if exceeds(error, REFINE) {
             self.substitute_permuted(&mut residual);
             let mut refined = x.clone();
             for (x, correction) in refined.iter_mut().zip(&residual) {
@@ -101,7 +101,7 @@ impl Cholesky {
                 (x, error) = (refined, after);
             }
         }
-        if !(error <= REFUSE) {
+        if exceeds(error, REFUSE) {
             return Err(Error::Inaccurate { residual: error });
         }
         self.scatter(&x, columns);
@@ -210,6 +210,11 @@ impl Cholesky {
         let values = &self.factor[values[block] as usize..values[block + 1] as usize];
         (blocks.supernode_begin()[block] as usize, values)
     }
+}
+
+/// Whether `error` is larger than `limit` or not a number.
+fn exceeds(error: f64, limit: f64) -> bool {
+    error.is_nan() || error > limit
 }
 
 /// x ← x − column · factor.

@@ -1,7 +1,14 @@
 //! What a factorization needs to know of the pattern: order, elimination tree, blocks of columns.
 
+use std::fmt;
+
 use faer::{
-    dyn_stack::{MemBuffer, MemStack},
+    Par,
+    dyn_stack::{MemBuffer, MemStack, StackReq},
+    linalg::{
+        cholesky::llt::factor::{LltParams, cholesky_in_place_scratch},
+        temp_mat_scratch,
+    },
     sparse::{
         SymbolicSparseColMatRef,
         linalg::{
@@ -26,7 +33,6 @@ use crate::{
 };
 
 /// The order of elimination and the pattern of the factor, for all matrices with one pattern.
-#[derive(Debug)]
 pub struct SymbolicCholesky {
     /// The pattern that was analyzed.
     starts: Vec<u32>,
@@ -38,8 +44,9 @@ pub struct SymbolicCholesky {
     lower_rows: Vec<u32>,
     sources: Vec<u32>,
     blocks: SymbolicSupernodalCholesky<u32>,
-    /// The largest number of rows below the diagonal of a block.
+    /// The largest number of rows below the diagonal of a block, and of its columns.
     tallest: usize,
+    widest: usize,
 }
 
 impl SymbolicCholesky {
@@ -68,6 +75,8 @@ impl SymbolicCholesky {
         let (lower_starts, lower_rows, sources) = lower_triangle(matrix, &tree);
         let blocks = blocks(&graph, &tree)?;
         let tallest = blocks.nnz_per_super().iter().map(|&rows| rows as usize).max().unwrap_or(0);
+        let ends = blocks.supernode_begin().iter().zip(blocks.supernode_end());
+        let widest = ends.map(|(&begin, &end)| (end - begin) as usize).max().unwrap_or(0);
         progress.report(1.0)?;
         Ok(SymbolicCholesky {
             starts: matrix.starts().to_vec(),
@@ -78,6 +87,7 @@ impl SymbolicCholesky {
             sources,
             blocks,
             tallest,
+            widest,
         })
     }
 
@@ -114,6 +124,19 @@ impl SymbolicCholesky {
         self.tallest
     }
 
+    /// What the factorization of the blocks needs at most.
+    ///
+    /// faer's own function goes through all pairs of blocks that meet, nearly as long as factoring small
+    /// ones takes. What it adds up for a pair grows with the sizes of both.
+    pub(super) fn scratch(&self) -> StackReq {
+        let (n, tallest, widest) = (self.rows(), self.tallest, self.widest);
+        let indices = [n, tallest, tallest.min(widest)].map(StackReq::new::<u32>);
+        let product = temp_mat_scratch::<f64>(tallest, widest.min(tallest));
+        let params = faer::Spec::<LltParams, f64>::default();
+        let block = cholesky_in_place_scratch::<f64>(widest, Par::Seq, params);
+        StackReq::all_of(&indices).and(product).and(block)
+    }
+
     /// Starts and rows of the lower triangle in the order of elimination.
     pub(super) fn lower_pattern(&self) -> (&[u32], &[u32]) {
         (&self.lower_starts, &self.lower_rows)
@@ -139,6 +162,12 @@ impl SymbolicCholesky {
             |j: usize| &self.indices[self.starts[j] as usize..self.starts[j + 1] as usize];
         let column = (0..self.rows()).find(|&j| analyzed(j) != matrix.column(j).0);
         Err(Error::OtherPattern { column: column.unwrap_or(0) })
+    }
+}
+
+impl fmt::Debug for SymbolicCholesky {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} rows, {} entries of the factor", self.rows(), self.factor_entries())
     }
 }
 

@@ -82,19 +82,18 @@ impl EqualitySystem {
                 schur[i * count + j] = row.iter().zip(column).map(|(a, b)| a * b).sum();
             }
         }
+        let sizes: Vec<f64> = (0..count).map(|i| schur[i * count + i].abs().sqrt()).collect();
         for (k, &row) in raised.iter().enumerate() {
             let place = constraints.rows() + k;
             schur[place * count + place] -= 1.0 / raise[row as usize];
         }
-        let schur = Dense::new(schur, count).map_err(|equation| {
-            match raised.get(equation.wrapping_sub(constraints.rows())) {
-                None => Error::DependentConstraint { constraint: equation },
-                Some(_) => {
-                    let component = &components[equation - constraints.rows()];
-                    let row = component.iter().min().map_or(0, |&row| row as usize);
-                    Error::Unconstrained { row, size: component.len() }
-                }
-            }
+        let schur = Dense::new(schur, &sizes).map_err(|equation| {
+            let Some(component) = equation.checked_sub(constraints.rows()) else {
+                return Error::DependentConstraint { constraint: equation };
+            };
+            let component = &components[component];
+            let row = component.iter().min().map_or(0, |&row| row as usize);
+            Error::Unconstrained { row, size: component.len() }
         })?;
         progress.report(1.0)?;
         let constraints = constraints.clone();
@@ -129,7 +128,7 @@ impl EqualitySystem {
     }
 }
 
-/// A small dense matrix, factored by elimination with complete pivoting of rows.
+/// A small dense matrix, factored by elimination with pivots.
 #[derive(Clone, Debug)]
 struct Dense {
     n: usize,
@@ -138,19 +137,19 @@ struct Dense {
 }
 
 impl Dense {
-    /// Factors the matrix with these rows; the row that depends on others if there is one.
-    fn new(mut values: Vec<f64>, n: usize) -> Result<Dense, usize> {
-        // Rows are scaled by their diagonal to make pivots comparable.
-        let size: Vec<f64> = (0..n)
-            .map(|i| values[i * n..(i + 1) * n].iter().map(|x| x.abs()).fold(0.0, f64::max))
-            .collect();
+    /// Factors the symmetric matrix with these rows; the first that depends on those before it, if
+    /// there is one.
+    ///
+    /// An entry is compared with the product of the `sizes` of its row and column.
+    fn new(mut values: Vec<f64>, sizes: &[f64]) -> Result<Dense, usize> {
+        let n = sizes.len();
         let mut row_of: Vec<usize> = (0..n).collect();
         let mut pivots = Vec::with_capacity(n);
         for k in 0..n {
-            let weight = |i: usize| values[i * n + k].abs() / size[row_of[i]];
+            let weight = |i: usize| values[i * n + k].abs() / (sizes[row_of[i]] * sizes[k]);
             let pivot = (k..n).max_by(|&a, &b| weight(a).total_cmp(&weight(b))).unwrap_or(k);
-            if !(weight(pivot) > 1e-13 * n as f64) {
-                return Err(row_of[k..].iter().copied().max().unwrap_or(k));
+            if weight(pivot).is_nan() || weight(pivot) <= 1e-13 * n as f64 {
+                return Err(k);
             }
             row_of.swap(k, pivot);
             pivots.push(pivot);

@@ -43,7 +43,7 @@ impl SoftSystem {
     ) -> Result<SoftSystem, Error> {
         Error::check_length("the constraints (columns)", constraints.columns(), matrix.rows())?;
         Error::check_length("the weights", weights.len(), constraints.rows())?;
-        if let Some(&weight) = weights.iter().find(|&&weight| !(weight >= 0.0)) {
+        if let Some(&weight) = weights.iter().find(|weight| weight.is_nan() || **weight < 0.0) {
             return Err(Error::option("weights", weight, "not negative"));
         }
         matrix.check_symmetric()?;

@@ -209,13 +209,13 @@ mod tests {
             let weights: Vec<f64> = w.into_iter().map(f64::from).collect();
             let gram = a.gram(&weights).unwrap();
             prop_assert!(is_sound(&sum) && is_sound(&product) && is_sound(&gram));
-            let (x, y, z) = (dense(&a), dense(&b), dense(&c));
+            let (x, y) = (dense(&a), dense(&b));
             for i in 0..5 {
                 for j in 0..7 {
                     prop_assert_eq!(sum.get(i, j), 2.0 * x[i][j] - 3.0 * y[i][j]);
                 }
                 for j in 0..4 {
-                    let expected: f64 = (0..7).map(|k| x[i][k] * z[k][j]).sum();
+                    let expected: f64 = (0..7).map(|k| x[i][k] * c.get(k, j)).sum();
                     prop_assert_eq!(product.get(i, j), expected);
                 }
             }

@@ -175,6 +175,12 @@ impl SparseMatrix {
 
     fn asymmetry(&self, row: usize, column: usize) -> Error {
         let (value, mirrored) = (self.get(row, column), self.get(column, row));
+        if !value.is_finite() {
+            return Error::NotFinite { row, column, value };
+        }
+        if !mirrored.is_finite() {
+            return Error::NotFinite { row: column, column: row, value: mirrored };
+        }
         Error::NotSymmetric { row, column, value, mirrored }
     }
 }

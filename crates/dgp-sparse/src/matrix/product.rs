@@ -51,29 +51,12 @@ impl SparseMatrix {
 
     /// A X, where the columns of X stand one after the other in `x`, and those of the result likewise.
     pub fn product_many(&self, x: &[f64]) -> Vec<f64> {
-        self.many(x, self.columns(), self.rows, |x, y| self.add_product(1.0, x, y))
+        many(x, self.columns(), self.rows, |x, y| self.add_product(1.0, x, y))
     }
 
     /// Aᵀ X, where the columns of X stand one after the other in `x`, and those of the result likewise.
     pub fn transpose_product_many(&self, x: &[f64]) -> Vec<f64> {
-        self.many(x, self.rows, self.columns(), |x, y| self.transpose_product_into(x, y))
-    }
-
-    fn many(
-        &self,
-        x: &[f64],
-        length: usize,
-        result: usize,
-        multiply: impl Fn(&[f64], &mut [f64]) + Sync + Send,
-    ) -> Vec<f64> {
-        let count = x.len().checked_div(length).unwrap_or(0);
-        assert_eq!(x.len(), count * length, "whole columns");
-        let mut y = vec![0.0; count * result];
-        parallel::map_chunks(&mut y, result, |first, y| {
-            let column = first / result.max(1);
-            multiply(&x[column * length..(column + 1) * length], y);
-        });
-        y
+        many(x, self.rows, self.columns(), |x, y| self.transpose_product_into(x, y))
     }
 
     /// xᵀ A y.
@@ -89,6 +72,23 @@ impl SparseMatrix {
             columns.map(of_column).sum()
         })
     }
+}
+
+/// `multiply` on each of the columns of `length` that stand one after the other in `x`.
+fn many(
+    x: &[f64],
+    length: usize,
+    result: usize,
+    multiply: impl Fn(&[f64], &mut [f64]) + Sync + Send,
+) -> Vec<f64> {
+    let count = x.len().checked_div(length).unwrap_or(0);
+    assert_eq!(x.len(), count * length, "whole columns");
+    let mut y = vec![0.0; count * result];
+    parallel::map_chunks(&mut y, result, |first, y| {
+        let column = first / result.max(1);
+        multiply(&x[column * length..(column + 1) * length], y);
+    });
+    y
 }
 
 #[cfg(test)]

@@ -493,7 +493,9 @@ mod tests {
         engine.clear(3);
         let lists: [&[u32]; 9] =
             [&[1, 3, 4, 5], &[0, 2], &[1, 6, 7, 8], &[0], &[0], &[0], &[2], &[2], &[2]];
-        lists.iter().for_each(|list| engine.push(list.iter().copied()));
+        for list in lists {
+            engine.push(list.iter().copied());
+        }
         let mut order = Vec::new();
         engine.run(|i| order.push(i));
         assert_eq!(order[0], 1);

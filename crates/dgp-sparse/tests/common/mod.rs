@@ -34,3 +34,23 @@ pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
         ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
+
+/// By elimination with pivots, as in the textbook.
+pub(crate) fn dense_solve(mut rows: Vec<Vec<f64>>, rhs: &[f64]) -> Vec<f64> {
+    let n = rhs.len();
+    rows.iter_mut().zip(rhs).for_each(|(row, &rhs)| row.push(rhs));
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs())).unwrap();
+        rows.swap(k, pivot);
+        let top = rows[k].clone();
+        for row in &mut rows[k + 1..] {
+            let factor = row[k] / top[k];
+            row.iter_mut().zip(&top).for_each(|(x, top)| *x -= factor * top);
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| rows[k][j] * rows[j][n]).sum();
+        rows[k][n] = (rows[k][n] - known) / rows[k][k];
+    }
+    rows.iter().map(|row| row[n]).collect()
+}

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use dgp_sparse::SparseMatrix;
 
 /// The number of vertices, and the triangles.
-pub type Surface = (usize, Vec<[u32; 3]>);
+pub(crate) type Surface = (usize, Vec<[u32; 3]>);
 
 /// An icosahedron whose faces are cut in four so often.
-pub fn sphere(level: usize) -> Surface {
+pub(crate) fn sphere(level: usize) -> Surface {
     let mut faces: Vec<[u32; 3]> = (0..5)
         .flat_map(|i| {
             let (a, b, c, d) = (1 + i, 1 + (i + 1) % 5, 6 + i, 6 + (i + 1) % 5);
@@ -37,13 +37,14 @@ pub fn sphere(level: usize) -> Surface {
 
 /// A gyroid: so many cells of a grid along each side of a cube that holds two periods,
 /// whose opposite sides are glued. A closed surface of genus 33.
-pub fn gyroid(cells: u32) -> Surface {
+pub(crate) fn gyroid(cells: u32) -> Surface {
     let turn = 4.0 * std::f64::consts::PI / f64::from(cells);
     let value = |p: [u32; 3]| {
         let [x, y, z] = p.map(|i| turn * (f64::from(i % cells) + 0.123));
         x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()
     };
-    let index = |p: [u32; 3]| p.iter().fold(0_u64, |sum, &i| sum * u64::from(cells) + u64::from(i % cells));
+    let index =
+        |p: [u32; 3]| p.iter().fold(0_u64, |sum, &i| sum * u64::from(cells) + u64::from(i % cells));
     let mut crossings: BTreeMap<(u64, u64), u32> = BTreeMap::new();
     let mut faces = Vec::new();
     // Each cell is six tetrahedra along its diagonal (Freudenthal).
@@ -78,7 +79,7 @@ pub fn gyroid(cells: u32) -> Surface {
 }
 
 /// Each edge once, with weight 1.
-pub fn edges_of(faces: &[[u32; 3]]) -> Vec<(u32, u32, f64)> {
+pub(crate) fn edges_of(faces: &[[u32; 3]]) -> Vec<(u32, u32, f64)> {
     let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
     let mut edges: Vec<(u32, u32)> =
         faces.iter().flat_map(sides).map(|(a, b)| (a.min(b), a.max(b))).collect();
@@ -88,7 +89,7 @@ pub fn edges_of(faces: &[[u32; 3]]) -> Vec<(u32, u32, f64)> {
 }
 
 /// L + M of the graph, where M is a small mass.
-pub fn system((n, faces): &Surface) -> SparseMatrix {
+pub(crate) fn system((n, faces): &Surface) -> SparseMatrix {
     let laplacian = SparseMatrix::from_edges(*n, &edges_of(faces)).unwrap();
     laplacian.plus_diagonal(&vec![1e-3; *n]).unwrap()
 }

@@ -3,6 +3,7 @@
 //! A cluster starts with a vertex that is in none and takes up to three more, each time the one with
 //! most edges to the cluster, so that clusters are round. What finds nobody joins a neighbor's cluster.
 
+use super::separator::Local;
 use crate::{
     Error, Progress,
     order::{Graph, NONE},
@@ -34,17 +35,58 @@ enum Borrowed<'a> {
     Coarse(Graph),
 }
 
-impl Level<'_> {
-    pub(super) fn len(&self) -> usize {
+/// What clustering needs to know of a graph.
+pub(super) trait Weighted {
+    fn len(&self) -> usize;
+    fn weight(&self, v: usize) -> u32;
+    /// Neighbors of `v`, and the weights of the edges to them.
+    fn edges(&self, v: usize) -> impl Iterator<Item = (u32, u32)> + '_;
+}
+
+impl Weighted for Level<'_> {
+    fn len(&self) -> usize {
         self.graph().len()
     }
 
-    pub(super) fn neighbors(&self, v: usize) -> &[u32] {
-        self.graph().neighbors(v)
+    fn weight(&self, v: usize) -> u32 {
+        self.weights.get(v).copied().unwrap_or(1)
     }
 
-    pub(super) fn weight(&self, v: usize) -> u32 {
-        self.weights.get(v).copied().unwrap_or(1)
+    fn edges(&self, v: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let starts = self.graph().starts();
+        with_weights(self.neighbors(v), &self.edge_weights, starts[v], starts[v + 1])
+    }
+}
+
+impl Weighted for Local {
+    fn len(&self) -> usize {
+        self.weights.len()
+    }
+
+    fn weight(&self, v: usize) -> u32 {
+        self.weights[v]
+    }
+
+    fn edges(&self, v: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let neighbors = self.neighbors(v);
+        with_weights(neighbors, &self.edge_weights, self.starts[v], self.starts[v + 1])
+    }
+}
+
+/// Neighbors with the weights of their edges, which are 1 where there are none.
+fn with_weights<'a>(
+    neighbors: &'a [u32],
+    weights: &'a [u32],
+    start: u32,
+    end: u32,
+) -> impl Iterator<Item = (u32, u32)> + 'a {
+    let weights = weights.get(start as usize..end as usize).unwrap_or_default();
+    neighbors.iter().copied().zip(weights.iter().copied().chain(std::iter::repeat(1)))
+}
+
+impl Level<'_> {
+    pub(super) fn neighbors(&self, v: usize) -> &[u32] {
+        self.graph().neighbors(v)
     }
 
     fn graph(&self) -> &Graph {
@@ -52,13 +94,6 @@ impl Level<'_> {
             Borrowed::Finest(graph) => graph,
             Borrowed::Coarse(graph) => graph,
         }
-    }
-
-    fn edges(&self, v: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
-        let starts = self.graph().starts();
-        let weights = self.edge_weights.get(starts[v] as usize..starts[v + 1] as usize);
-        let weights = weights.unwrap_or_default().iter().copied().chain(std::iter::repeat(1));
-        self.neighbors(v).iter().copied().zip(weights)
     }
 }
 
@@ -77,13 +112,10 @@ pub(super) fn coarsen<'a>(
             return Ok(levels);
         }
         progress.report(1.0 - fine.len() as f64 / graph.len() as f64)?;
-        let total = graph.len() as u64;
-        let most = 3 * total / fine.len() as u64 * CLUSTER as u64 / 2;
-        let (cluster, count) = clusters(fine, most.max(2));
-        if count as f64 > STALLED * fine.len() as f64 {
-            return Ok(levels);
-        }
-        let coarse = contract(fine, &cluster, count);
+        let Some((cluster, coarse)) = cluster(fine, CLUSTER) else { return Ok(levels) };
+        let Local { starts, neighbors, weights, edge_weights, .. } = coarse;
+        let graph = Borrowed::Coarse(Graph::new(starts, neighbors));
+        let coarse = Level { graph, weights, edge_weights, cluster: None };
         if let Some(fine) = levels.last_mut() {
             fine.cluster = Some(cluster);
         }
@@ -91,11 +123,24 @@ pub(super) fn coarsen<'a>(
     }
 }
 
+/// The cluster of each vertex, of about `size` vertices each, and the graph of the clusters; `None` when
+/// clustering has come to an end.
+pub(super) fn cluster(fine: &impl Weighted, size: usize) -> Option<(Vec<u32>, Local)> {
+    let total: u64 = (0..fine.len()).map(|v| u64::from(fine.weight(v))).sum();
+    let most = 3 * size as u64 * total / (2 * fine.len() as u64);
+    let (cluster, count) = clusters(fine, most.max(2), size);
+    if count as f64 > STALLED * fine.len() as f64 {
+        return None;
+    }
+    let coarse = contract(fine, &cluster, count);
+    Some((cluster, coarse))
+}
+
 /// The cluster of each vertex, and how many there are. None grows beyond the weight `most`.
-fn clusters(level: &Level<'_>, most: u64) -> (Vec<u32>, usize) {
+fn clusters(level: &impl Weighted, most: u64, size: usize) -> (Vec<u32>, usize) {
     let n = level.len();
     let mut cluster = vec![NONE; n];
-    let mut weight_of: Vec<u64> = Vec::with_capacity(n / CLUSTER + 1);
+    let mut weight_of: Vec<u64> = Vec::with_capacity(n / size + 1);
     // Edges from each vertex to the cluster that grows.
     let mut bonds = vec![0_u32; n];
     let mut candidates: Vec<u32> = Vec::new();
@@ -107,7 +152,7 @@ fn clusters(level: &Level<'_>, most: u64) -> (Vec<u32>, usize) {
         let mut weight = u64::from(level.weight(v));
         let mut newest = v;
         cluster[v] = current;
-        for _ in 1..CLUSTER {
+        for _ in 1..size {
             for (w, bond) in level.edges(newest) {
                 if cluster[w as usize] == NONE {
                     if bonds[w as usize] == 0 {
@@ -145,7 +190,7 @@ fn clusters(level: &Level<'_>, most: u64) -> (Vec<u32>, usize) {
 
 /// The cluster next to `v` with the heaviest edge that can take it.
 fn neighbor_cluster(
-    level: &Level<'_>,
+    level: &impl Weighted,
     v: usize,
     cluster: &[u32],
     weight_of: &[u64],
@@ -162,7 +207,7 @@ fn neighbor_cluster(
 }
 
 /// The graph whose vertices are the clusters.
-fn contract<'a>(fine: &Level<'_>, cluster: &[u32], count: usize) -> Level<'a> {
+fn contract(fine: &impl Weighted, cluster: &[u32], count: usize) -> Local {
     let mut starts = vec![0_u32; count + 1];
     for &c in cluster {
         starts[c as usize + 1] += 1;
@@ -204,6 +249,5 @@ fn contract<'a>(fine: &Level<'_>, cluster: &[u32], count: usize) -> Level<'a> {
         weights.push(weight);
         coarse_starts.push(neighbors.len() as u32);
     }
-    let graph = Borrowed::Coarse(Graph::new(coarse_starts, neighbors));
-    Level { graph, weights, edge_weights, cluster: None }
+    Local { starts: coarse_starts, neighbors, weights, edge_weights, free: count }
 }

@@ -32,15 +32,18 @@ use super::{
     minimum_degree::{MinimumDegree, dense_limit},
 };
 use crate::{Error, Progress, parallel};
-use coarsen::{Level, coarsen};
+use coarsen::{Weighted, coarsen};
 use regions::Regions;
 
-/// Blocks of this many vertices of the graph are not cut further: minimum degree orders them as well.
-const LEAF: u64 = 240;
+/// Blocks that weigh no more are not cut further: minimum degree orders them as well.
+const LEAF: u64 = 1000;
 
-/// Blocks of more vertices than this are cut on the level where they occur. More would make the search
-/// for a cut slower, fewer would make cuts that finer levels cannot mend.
-const BLOCK: usize = 200;
+/// Blocks of more vertices than this are cut on the level where they occur, unless it is the finest one.
+/// More would make the search for a cut slower, fewer would make cuts that finer levels cannot mend.
+const BLOCK: usize = 350;
+
+/// The same on the finest level, where only what could not be clustered is as large.
+const FINEST_BLOCK: usize = 2000;
 
 /// An order for the whole of `graph`.
 pub(crate) fn dissection(graph: &Graph, progress: Progress<'_>) -> Result<Vec<u32>, Error> {
@@ -62,14 +65,15 @@ fn dissect(graph: &Graph, progress: Progress<'_>) -> Result<Vec<u32>, Error> {
     let n = graph.len();
     let levels = coarsen(graph, progress.part(0.0, 0.3))?;
     let mut regions = Regions::new(n as u64);
-    let mut label = vec![0_u32; levels.last().map_or(n, Level::len)];
+    let mut label = vec![0_u32; levels.last().map_or(n, Weighted::len)];
     for (depth, level) in levels.iter().enumerate().rev() {
         progress.report(0.3 + 0.4 * (levels.len() - depth) as f64 / levels.len() as f64)?;
         if let Some(cluster) = &level.cluster {
             label = cluster.iter().map(|&c| label[c as usize]).collect();
             refine::refine(level, &mut label, &mut regions);
         }
-        bisect::split_blocks(level, &mut label, &mut regions);
+        let most = if depth == 0 { FINEST_BLOCK } else { BLOCK };
+        bisect::split_blocks(level, &mut label, &mut regions, most);
     }
     progress.report(0.7)?;
     let order = eliminate(graph, &label, &regions);

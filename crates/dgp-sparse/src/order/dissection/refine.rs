@@ -5,7 +5,7 @@
 //! if it borders on both sides of a lower cut, it joins that.
 
 use super::{
-    coarsen::Level,
+    coarsen::{Level, Weighted},
     regions::Regions,
     separator::{CUT, Cut, Improver, Local},
 };
@@ -95,6 +95,7 @@ impl Band {
         let parts = regions.parts(region).map(|part| regions.weight(part) as i64);
         let cut = regions.weight(region) as i64 - parts[0] - parts[1];
         self.cut.weight = [parts[0], parts[1], cut];
+        self.cut.expense = self.cut.expense_of(graph);
     }
 
     /// Gives new labels to what changed.

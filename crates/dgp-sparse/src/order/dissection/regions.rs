@@ -57,13 +57,13 @@ impl Regions {
     pub(super) fn cut(&mut self, region: u32, weights: [u64; 2]) -> [u32; 2] {
         let Region { depth, path, .. } = self.regions[region as usize];
         let first = self.regions.len() as u32;
-        for side in 0..2 {
+        for (side, weight) in weights.into_iter().enumerate() {
             self.regions.push(Region {
                 parent: region,
                 parts: [NONE; 2],
                 depth: depth + 1,
                 path: path | (side as u64) << depth,
-                weight: weights[side],
+                weight,
             });
         }
         self.regions[region as usize].parts = [first, first + 1];

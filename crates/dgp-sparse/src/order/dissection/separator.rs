@@ -1,9 +1,9 @@
 //! Cuts of a small graph into two sides by vertices, and moves that make them smaller.
 //!
-//! A vertex of the cut moves to one side, and its neighbors on the other side come into the cut: the cut
-//! becomes lighter by the weight of the vertex less that of these neighbors. The best move is made
-//! again and again, also where it makes the cut heavier, no vertex twice; then all moves after the
-//! lightest state are undone.
+//! A vertex of the cut moves to one side, and its neighbors on the other side come into the cut, which
+//! becomes cheaper by the cost of the vertex less that of these neighbors. The best move is made
+//! again and again, also where it makes the cut dearer, no vertex twice; then all moves after the
+//! cheapest state are undone.
 //!
 //! - Reference: Fiduccia and Mattheyses, "A linear-time heuristic for improving network partitions",
 //!   1982; Ashcraft and Liu, "A partition improvement algorithm for generalized nested dissection",
@@ -17,6 +17,12 @@ pub(super) const CUT: u8 = 2;
 /// No side may have more than this part of the weight: the bound that METIS uses.
 const HEAVIEST: f64 = 0.6;
 
+/// How many moves without a better state are made at least.
+const PATIENCE: usize = 20;
+
+/// The cost of a vertex of weight 1, large enough to tell roots of small weights apart.
+const COST: f64 = 64.0;
+
 /// What it costs to draw a fixed vertex into the cut: more than there is.
 const FORBIDDEN: i64 = 1 << 40;
 
@@ -26,20 +32,25 @@ pub(super) struct Local {
     pub(super) starts: Vec<u32>,
     pub(super) neighbors: Vec<u32>,
     pub(super) weights: Vec<u32>,
+    /// Weights of edges in the place of the neighbor; empty where they do not matter.
+    pub(super) edge_weights: Vec<u32>,
     /// Vertices from here on stay on their side. They list no neighbors.
     pub(super) free: usize,
 }
 
 impl Local {
-    pub(super) fn len(&self) -> usize {
-        self.weights.len()
-    }
-
     pub(super) fn neighbors(&self, v: usize) -> &[u32] {
         &self.neighbors[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
-    pub(super) fn weight(&self, v: usize) -> i64 {
+    /// What it costs to have `v` in the cut. A vertex that stands for w vertices of a surface is some √w
+    /// of them wide, and that many a finer cut will take.
+    pub(super) fn cost(&self, v: usize) -> i64 {
+        (COST * f64::from(self.weights[v]).sqrt()) as i64
+    }
+
+    /// The weight of `v`, to calculate with.
+    pub(super) fn weighs(&self, v: usize) -> i64 {
         i64::from(self.weights[v])
     }
 }
@@ -49,6 +60,8 @@ impl Local {
 pub(super) struct Cut {
     pub(super) side: Vec<u8>,
     pub(super) weight: [i64; 3],
+    /// The cost of all vertices of the cut.
+    pub(super) expense: i64,
 }
 
 impl Cut {
@@ -56,14 +69,32 @@ impl Cut {
     pub(super) fn new(graph: &Local, side: Vec<u8>) -> Cut {
         let mut weight = [0; 3];
         for (v, &side) in side.iter().enumerate() {
-            weight[usize::from(side)] += graph.weight(v);
+            weight[usize::from(side)] += graph.weighs(v);
         }
-        Cut { side, weight }
+        let mut cut = Cut { side, weight, expense: 0 };
+        cut.expense = cut.expense_of(graph);
+        cut
     }
 
-    /// Smaller is better: the weight of the cut, then the imbalance.
-    pub(super) fn cost(&self) -> (i64, i64) {
-        (self.weight[2], (self.weight[0] - self.weight[1]).abs())
+    /// The cost of all vertices of the cut, added up.
+    pub(super) fn expense_of(&self, graph: &Local) -> i64 {
+        (0..self.side.len()).filter(|&v| self.side[v] == CUT).map(|v| graph.cost(v)).sum()
+    }
+
+    /// Smaller is better: the cost of the cut, raised by the part of the weight by which the sides differ,
+    /// since what is cheap here is dear further down if the sides are unequal.
+    pub(super) fn quality(&self) -> (i64, i64) {
+        let imbalance = (self.weight[0] - self.weight[1]).abs();
+        let total = self.weight.iter().sum::<i64>().max(1);
+        (self.expense + self.expense * imbalance / total, imbalance)
+    }
+
+    fn set(&mut self, graph: &Local, v: usize, new: u8) -> u8 {
+        let old = std::mem::replace(&mut self.side[v], new);
+        self.weight[usize::from(old)] -= graph.weighs(v);
+        self.weight[usize::from(new)] += graph.weighs(v);
+        self.expense += graph.cost(v) * (i64::from(new == CUT) - i64::from(old == CUT));
+        old
     }
 
     fn limit(&self) -> i64 {
@@ -94,12 +125,12 @@ impl Improver {
     }
 
     fn pass(&mut self, graph: &Local, cut: &mut Cut) -> bool {
-        let before = cut.cost();
+        let before = cut.quality();
         let limit = cut.limit();
         self.pulled.clear();
-        self.pulled.resize(graph.len(), [0; 2]);
+        self.pulled.resize(graph.weights.len(), [0; 2]);
         self.moved.clear();
-        self.moved.resize(graph.len(), false);
+        self.moved.resize(graph.weights.len(), false);
         self.log.clear();
         self.heaps.iter_mut().for_each(BinaryHeap::clear);
         let mut count = 0;
@@ -110,12 +141,12 @@ impl Improver {
             }
         }
         // How long to go on without a better state.
-        let patience = 20 + count / 4;
+        let patience = PATIENCE + count / 4;
         let (mut best, mut best_length, mut worse) = (before, 0, 0);
         while worse <= patience {
             let Some((v, side)) = self.choose(graph, cut, limit) else { break };
             self.apply(graph, cut, v, side);
-            let cost = cut.cost();
+            let cost = cut.quality();
             if cost < best {
                 (best, best_length, worse) = (cost, self.log.len(), 0);
             } else {
@@ -124,9 +155,7 @@ impl Improver {
         }
         while self.log.len() > best_length {
             if let Some((v, old)) = self.log.pop() {
-                let new = std::mem::replace(&mut cut.side[v as usize], old);
-                cut.weight[usize::from(new)] -= graph.weight(v as usize);
-                cut.weight[usize::from(old)] += graph.weight(v as usize);
+                cut.set(graph, v as usize, old);
             }
         }
         best < before
@@ -138,7 +167,7 @@ impl Improver {
         for &w in graph.neighbors(v) {
             let w = w as usize;
             if cut.side[w] != CUT {
-                let cost = if w < graph.free { graph.weight(w) } else { FORBIDDEN };
+                let cost = if w < graph.free { graph.cost(w) } else { FORBIDDEN };
                 pulled[1 - usize::from(cut.side[w])] += cost;
             }
         }
@@ -149,7 +178,7 @@ impl Improver {
 
     fn offer(&mut self, graph: &Local, v: usize, side: usize) {
         if !self.moved[v] && self.pulled[v][side] < FORBIDDEN {
-            let gain = graph.weight(v) - self.pulled[v][side];
+            let gain = graph.cost(v) - self.pulled[v][side];
             self.heaps[side].push((gain, u32::MAX - v as u32));
         }
     }
@@ -166,7 +195,7 @@ impl Improver {
                 _ => usize::from(cut.weight[1] < cut.weight[0]),
             };
             let fits = |side: usize, v: usize| {
-                let weight = cut.weight[side] + graph.weight(v);
+                let weight = cut.weight[side] + graph.weighs(v);
                 weight <= limit || cut.weight[side] < cut.weight[1 - side]
             };
             for side in [side, 1 - side] {
@@ -184,7 +213,7 @@ impl Improver {
     fn top(&mut self, graph: &Local, cut: &Cut, side: usize) -> Option<(i64, usize)> {
         while let Some(&(gain, reversed)) = self.heaps[side].peek() {
             let v = (u32::MAX - reversed) as usize;
-            let current = graph.weight(v) - self.pulled[v][side];
+            let current = graph.cost(v) - self.pulled[v][side];
             if cut.side[v] == CUT && !self.moved[v] && gain == current {
                 return Some((gain, v));
             }
@@ -201,14 +230,14 @@ impl Improver {
             let w = w as usize;
             if cut.side[w] == CUT {
                 // Moving w to the other side would now draw v back.
-                self.pulled[w][other] += graph.weight(v);
+                self.pulled[w][other] += graph.cost(v);
                 self.offer(graph, w, other);
             } else if usize::from(cut.side[w]) == other {
                 self.mark(graph, cut, w, CUT);
                 for &x in graph.neighbors(w) {
                     let x = x as usize;
                     if cut.side[x] == CUT && x != w {
-                        self.pulled[x][side] -= graph.weight(w);
+                        self.pulled[x][side] -= graph.cost(w);
                         self.offer(graph, x, side);
                     }
                 }
@@ -218,9 +247,7 @@ impl Improver {
     }
 
     fn mark(&mut self, graph: &Local, cut: &mut Cut, v: usize, new: u8) {
-        let old = std::mem::replace(&mut cut.side[v], new);
-        cut.weight[usize::from(old)] -= graph.weight(v);
-        cut.weight[usize::from(new)] += graph.weight(v);
+        let old = cut.set(graph, v, new);
         self.log.push((v as u32, old));
     }
 }
@@ -253,6 +280,7 @@ mod tests {
         let apart = |v: usize, w: usize| cut.side[v] + cut.side[w] != 1;
         (0..graph.free).all(|v| graph.neighbors(v).iter().all(|&w| apart(v, w as usize)))
             && cut.weight == Cut::new(graph, cut.side.clone()).weight
+            && cut.expense == cut.expense_of(graph)
     }
 
     #[test]
@@ -263,10 +291,10 @@ mod tests {
             (x, y) if x > 11 + y % 2 => 1,
             _ => CUT,
         };
-        let mut cut = Cut::new(&graph, (0..graph.len()).map(side).collect());
+        let mut cut = Cut::new(&graph, (0..graph.weights.len()).map(side).collect());
         Improver::default().improve(&graph, &mut cut, 10);
         assert!(is_sound(&graph, &cut));
-        assert_eq!(cut.cost().0, 9, "{:?}", cut.weight);
+        assert_eq!(cut.weight[2], 9, "{:?}", cut.weight);
     }
 
     #[test]
