@@ -2,6 +2,7 @@
 //! a valid result or an error; the same bits for any number of threads; an end when it is cancelled.
 
 mod inputs;
+mod laplacians;
 mod outcome;
 mod table;
 

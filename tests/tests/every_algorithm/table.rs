@@ -18,7 +18,7 @@ use dgp_mesh::{
 };
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
-use crate::{inputs::Input, outcome::Outcome};
+use crate::{inputs::Input, laplacians::laplacians, outcome::Outcome};
 
 /// A name and what to run.
 pub(crate) struct Algorithm {
@@ -45,22 +45,37 @@ impl Algorithm {
 
 /// All there are. To add one, add a line: a name, and a closure from faces or a mesh to an outcome.
 pub(crate) fn algorithms() -> Vec<Algorithm> {
-    [building(), measures(), curvatures(), searches(), edits(), smoothing(), pictures_and_files()]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        building(),
+        measures(),
+        curvatures(),
+        searches(),
+        edits(),
+        smoothing(),
+        laplacians(),
+        pictures_and_files(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
-fn set(name: &'static str, body: fn(&IndexedFaceSet, Progress<'_>) -> Outcome) -> Algorithm {
+pub(crate) fn set(
+    name: &'static str,
+    body: fn(&IndexedFaceSet, Progress<'_>) -> Outcome,
+) -> Algorithm {
     Algorithm { name, body: Body::Set(body) }
 }
 
-fn mesh(name: &'static str, body: fn(&Mesh, Progress<'_>) -> Outcome) -> Algorithm {
+pub(crate) fn mesh(name: &'static str, body: fn(&Mesh, Progress<'_>) -> Outcome) -> Algorithm {
     Algorithm { name, body: Body::Mesh(body) }
 }
 
 /// The outcome of what changes a copy of a mesh.
-fn changed<T: std::fmt::Debug>(mesh: &Mesh, change: impl FnOnce(&mut Mesh) -> T) -> Outcome {
+pub(crate) fn changed<T: std::fmt::Debug>(
+    mesh: &Mesh,
+    change: impl FnOnce(&mut Mesh) -> T,
+) -> Outcome {
     let mut mesh = mesh.clone();
     let told = change(&mut mesh);
     Outcome::of_mesh(&mesh, &told)
