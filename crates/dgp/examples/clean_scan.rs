@@ -19,7 +19,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&folder)?;
     let (input, output) = (folder.join("scan.ply"), folder.join("clean.obj"));
     let scan = shapes::like_a_scan(&shapes::icosphere(4)?, 7)?;
-    io::write(&input, &scan.into(), &WriteOptions::default(), Progress::NONE)?;
+    let written = io::write(&input, &scan.into(), &WriteOptions::default(), Progress::NONE)?;
+    println!("a scan of {} bytes", written.bytes);
 
     let mut document = io::read(&input)?;
     let found = defects(&document.set, Progress::NONE)?;
