@@ -9,6 +9,7 @@
 //! condition number.
 //!
 //! - Input: a matrix with at least as many rows as columns.
+//! - Cost: that of a Cholesky factorization of AᵀA; QR takes several times as long.
 //! - Guarantees: the gradient ‖Aᵀ(b − A x)‖ is checked; columns that depend on others are an error that
 //!   names one.
 //! - Reference: Björck, "Numerical Methods for Least Squares Problems", 1996; Davis, "Algorithm 915,

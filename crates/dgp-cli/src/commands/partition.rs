@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 use dgp::{
     laplace::spectral::{PartitionMethod, PartitionOptions, partition},
-    mesh::{COLOR, Color, VertexMap},
-    view::ColorMap,
+    mesh::{COLOR, Color},
+    view::{ColorMap, Field},
 };
 use serde_json::json;
 
@@ -68,8 +68,14 @@ impl Partition {
             })
             .map_err(|failure| failure.in_file(&self.input.path))?;
 
-        let shown: VertexMap<f64> = cut.part.map(|part| part.map_or(f64::NAN, f64::from));
-        let fields = vec![(format!("{} parts", cut.masses.len()), shown)];
+        // A color per face, since parts have nothing between them.
+        let shown = mesh.map_faces(|f| {
+            let parts: Vec<_> = mesh.face_vertices(f).map(|v| cut.part[v]).collect();
+            let count = |part| parts.iter().filter(|&&other| other == part).count();
+            let most = parts.iter().copied().max_by_key(|&part| count(part)).flatten();
+            most.map_or(f64::NAN, f64::from)
+        });
+        let fields = vec![(format!("{} parts", cut.masses.len()), Field::Faces(shown))];
         self.pictured.draw_all(&mut session, &mesh, fields, ColorMap::Turbo)?;
         if let Some(output) = self.output.given() {
             let last = (cut.masses.len() - 1).max(1) as f64;

@@ -30,7 +30,8 @@ impl Pictured {
         values: VertexMap<f64>,
         label: &str,
     ) -> Result<(), Failure> {
-        self.draw_all(session, mesh, vec![(label.to_owned(), values)], ColorMap::CoolWarm)
+        let fields = vec![(label.to_owned(), Field::Vertices(values))];
+        self.draw_all(session, mesh, fields, ColorMap::CoolWarm)
     }
 
     /// Draws fields side by side, if a picture was asked for.
@@ -38,13 +39,13 @@ impl Pictured {
         &self,
         session: &mut Session<'_>,
         mesh: &Mesh,
-        fields: Vec<(String, VertexMap<f64>)>,
+        fields: Vec<(String, Field<f64>)>,
         map: ColorMap,
     ) -> Result<(), Failure> {
         let Some(path) = &self.picture else { return Ok(()) };
         let range = if map == ColorMap::CoolWarm { Range::Symmetric } else { Range::Full };
         let panels = fields.into_iter().map(|(label, values)| {
-            let scalars = Scalars { map, range, ..Scalars::new(Field::Vertices(values)) };
+            let scalars = Scalars { map, range, ..Scalars::new(values) };
             let style = Style { paint: Paint::Scalars(scalars), ..Style::default() };
             Panel::new(label, Model { style, ..Model::new(mesh) })
         });

@@ -12,7 +12,7 @@ use dgp::{
     },
     mesh::{Mesh, Progress, VertexMap},
     sparse::{EigenOptions, SparseMatrix},
-    view::{ColorMap, Curve, Marker, Plot},
+    view::{ColorMap, Curve, Field, Marker, Plot},
 };
 use serde_json::json;
 
@@ -125,9 +125,10 @@ impl Spectrum {
             session.store(path, self.plot(&basis).to_svg().as_bytes())?;
         }
         // The first waves that are not constant on each part.
-        let fields = (basis.zero_count()..basis.len())
-            .take(6)
-            .map(|i| (format!("{i}: {:.5}", basis.values()[i]), basis.function(i).to_vec().into()));
+        let fields = (basis.zero_count()..basis.len()).take(6).map(|i| {
+            let function = Field::Vertices(basis.function(i).to_vec().into());
+            (format!("{i}: {:.5}", basis.values()[i]), function)
+        });
         self.pictured.draw_all(&mut session, &mesh, fields.collect(), ColorMap::CoolWarm)?;
         if let Some(path) = &self.eigenvectors {
             for i in 0..basis.len() {

@@ -7,6 +7,7 @@
 //! D keeps roots out, so that scaling A by 2ᵏ scales D exactly. Where entries of A off the diagonal are
 //! positive a pivot may become negative; then the diagonal is raised until none does.
 //!
+//! - Input: a symmetric matrix with a positive diagonal, both triangles stored.
 //! - Cost: O(entries · entries per column) time; O(entries) memory.
 //! - Reference: Meijerink and van der Vorst, "An iterative solution method for linear systems of which
 //!   the coefficient matrix is a symmetric M-matrix", 1977; Manteuffel, "An incomplete factorization

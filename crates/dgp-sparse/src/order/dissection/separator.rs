@@ -5,6 +5,8 @@
 //! again and again, also where it makes the cut dearer, no vertex twice; then all moves after the
 //! cheapest state are undone.
 //!
+//! - Input: a graph with costs of its vertices, and sides for them that no edge joins.
+//! - Cost: O(m log n) for each pass over the moves.
 //! - Reference: Fiduccia and Mattheyses, "A linear-time heuristic for improving network partitions",
 //!   1982; Ashcraft and Liu, "A partition improvement algorithm for generalized nested dissection",
 //!   1994.
