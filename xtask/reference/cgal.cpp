@@ -10,7 +10,6 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh/IO.h>
-#include <CGAL/Weights/mixed_voronoi_region_weights.h>
 #include <CGAL/Weights/utils.h>
 #include <CGAL/boost/graph/IO/polygon_mesh_io.h>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
@@ -95,7 +94,7 @@ void facts(Report& report, const Raw& raw, const std::string& prefix) {
     report.text("rings", rings.hex());
 
     const bool triangles = raw.triangles();
-    std::vector<double> normals, areas, angles, cotangents, regions;
+    std::vector<double> normals, areas, angles, cotangents;
     for (const auto f : mesh.faces()) {
         const Vector n = pmp::compute_face_normal(f, mesh);
         normals.insert(normals.end(), {n.x(), n.y(), n.z()});
@@ -108,7 +107,6 @@ void facts(Report& report, const Raw& raw, const std::string& prefix) {
             angles.push_back(CGAL::approximate_angle(at(k + degree - 1), at(k), at(k + 1)) * CGAL_PI / 180.0);
             if (!triangles) continue;
             cotangents.push_back(CGAL::Weights::cotangent(at(k + degree - 1), at(k), at(k + 1)));
-            regions.push_back(CGAL::Weights::mixed_voronoi_area(at(k + degree - 1), at(k), at(k + 1)));
         }
     }
     column(prefix, "face_normals", normals);
@@ -116,7 +114,6 @@ void facts(Report& report, const Raw& raw, const std::string& prefix) {
         column(prefix, "face_areas", areas);
         column(prefix, "corner_angles", angles);
         column(prefix, "corner_cotangents", cotangents);
-        column(prefix, "corner_voronoi_areas", regions);
         report.number("area", pmp::area(mesh));
         if (CGAL::is_closed(mesh)) report.number("volume", pmp::volume(mesh));
         // CGAL's own vertex normal is another one; these sums are written on its kernel.

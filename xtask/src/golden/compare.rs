@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 26] = [
+pub(crate) const QUANTITIES: [(&str, &str); 25] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -30,7 +30,6 @@ pub(crate) const QUANTITIES: [(&str, &str); 26] = [
     ("face_areas", "1e-12 · L²"),
     ("corner_angles", "cosines to 1e-12"),
     ("corner_cotangents", "1e-12 · (L²/area)²"),
-    ("corner_voronoi_areas", "1e-12 · L² · (L²/area)²"),
     ("vertex_normals_area", "1e-12 · condition"),
     ("vertex_normals_angle", "1e-12 · condition"),
     ("vertex_normals_max", "1e-12 · condition"),
@@ -213,13 +212,11 @@ impl<'a> Conditions<'a> {
             .collect()
     }
 
-    /// A value of L² and the condition of its face for each corner.
-    fn corners(&self, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
-        let faces = self.square.iter().zip(self.faces()).zip(self.set.faces().iter());
+    /// A value of the condition of its face for each corner.
+    fn corners(&self, f: impl Fn(f64) -> f64) -> Vec<f64> {
+        let faces = self.faces().into_iter().zip(self.set.faces().iter());
         faces
-            .flat_map(|((&square, condition), (_, face))| {
-                std::iter::repeat_n(f(square, condition), face.len())
-            })
+            .flat_map(|(condition, (_, face))| std::iter::repeat_n(f(condition), face.len()))
             .collect()
     }
 
@@ -288,10 +285,7 @@ impl<'a> Conditions<'a> {
             }
             "face_areas" => (1, self.square.clone()),
             "corner_angles" => (1, vec![1.0; ours.len()]),
-            "corner_cotangents" => (1, self.corners(|_, condition| condition * condition)),
-            "corner_voronoi_areas" => {
-                (1, self.corners(|square, condition| square * condition * condition))
-            }
+            "corner_cotangents" => (1, self.corners(|condition| condition * condition)),
             _ => (1, vec![ours.iter().copied().fold(0.0, f64::max); ours.len()]),
         };
         let relative = width == 3;

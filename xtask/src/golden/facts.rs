@@ -7,7 +7,7 @@ use dgp_mesh::{
     CrowdedEdges, DVec3, Error, Facing, HalfedgeId, IndexedFaceSet, IsolatedVertices, Mesh,
     NotManifold, Progress, RepairOptions, VertexId, VertexMap,
     graph::{Until, dijkstra},
-    measure::{self, NormalWeight, VertexArea, vertex_normals},
+    measure::{self, NormalWeight, vertex_normals},
     repair, topology,
 };
 use serde_json::{Map, Value, json};
@@ -60,7 +60,6 @@ pub(crate) fn ours(set: &IndexedFaceSet) -> Facts {
             facts.vectors(name, vertex_normals(&mesh, weight).values());
         }
         let angles = measure::corner_angles(&mesh);
-        let regions = measure::corner_areas(&mesh, VertexArea::MixedVoronoi);
         let corners: Vec<HalfedgeId> = mesh.faces().flat_map(|f| mesh.face_halfedges(f)).collect();
         let mut column = |name: &str, f: &dyn Fn(HalfedgeId) -> f64| {
             facts.columns.insert(name.into(), corners.iter().map(|&h| f(h)).collect());
@@ -68,7 +67,6 @@ pub(crate) fn ours(set: &IndexedFaceSet) -> Facts {
         column("corner_angles", &|h| angles[h]);
         // Ours is of the angle opposite a half-edge.
         column("corner_cotangents", &|h| mesh.cotangent(mesh.next(h)));
-        column("corner_voronoi_areas", &|h| regions[h]);
         facts.value("area", measure::area(&mesh));
         if report.closed {
             facts.value("volume", measure::volume(&mesh));
