@@ -125,7 +125,7 @@ macro_rules! number {
 
             #[inline]
             fn vertex(self, count: usize) -> Option<VertexId> {
-                // By way of fractions it would take several times as long.
+                // Not by way of fractions: `fract` is a call where processors lack an instruction for it.
                 usize::try_from(self).ok().filter(|&i| i < count).map(VertexId::new)
             }
         })*

@@ -68,7 +68,7 @@ impl Strided<'_> {
         }
     }
 
-    /// Writes the corners of faces whose degree is known here, which is twice as fast.
+    /// Writes the corners of faces whose degree is known here, so that loops over corners unroll.
     fn polygons<const N: usize>(&mut self, faces: &[[VertexId; N]]) {
         for (row, face) in self.bytes.chunks_exact_mut(self.size).zip(faces) {
             let indices = face.map(|v| index(v, self.big));
