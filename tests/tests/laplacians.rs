@@ -9,12 +9,14 @@ use dgp_laplace::{
         cotangent_laplacian, laplacian_report, mean_value_laplacian, uniform_laplacian,
         vertex_masses,
     },
+    spectral::Eigenbasis,
 };
 use dgp_mesh::{
-    DMat3, DVec3, IndexedFaceSet, Mesh, Progress, TriangulationMethod, curvature::curvature_report,
-    measure::area, shapes::Random, triangulate, triangulate_faces,
+    DMat3, DVec3, IndexedFaceSet, Mesh, Progress, TriangulationMethod, VertexMap,
+    curvature::curvature_report, measure::area, shapes::Random, topology::face_list_components,
+    triangulate, triangulate_faces,
 };
-use dgp_sparse::SparseMatrix;
+use dgp_sparse::{EigenOptions, SparseMatrix};
 use dgp_tests::data;
 
 /// Larger meshes take too long for a test.
@@ -45,6 +47,69 @@ fn laplacians_of_real_meshes_are_laplacians() {
     }
     eprintln!("{manifolds} manifolds, {others} others");
     assert!(manifolds > 30 && others > 5, "{manifolds} manifolds, {others} others");
+}
+
+/// As many eigenvalues are zero as there are components, on all files of several; of those that are no manifold the
+/// graph of their faces' edges, of the others the Laplacian of the surface too.
+#[test]
+fn zero_eigenvalues_count_the_components_of_real_meshes() {
+    let Some(folder) = data::shared() else {
+        eprintln!("skipped: no real data; set DGP_SHARED_DATA to their folder");
+        return;
+    };
+    let (mut graphs, mut surfaces) = (0, 0);
+    for path in data::files(&folder) {
+        let Ok(document) = dgp_io::read(&path) else { continue };
+        let set = document.set;
+        let parts = face_list_components(set.vertex_count(), set.faces()).count;
+        if parts < 2 || set.face_count() > MOST_FACES {
+            continue;
+        }
+        let name = path.display().to_string();
+        graphs += 1;
+        check_zeros(&format!("{name}, graph"), &graph_laplacian(&set), parts);
+        let Ok(mut mesh) = Mesh::new(&set) else { continue };
+        if triangulate(&mut mesh, TriangulationMethod::Ears, Progress::NONE).is_ok() {
+            let l = intrinsic_delaunay(&mesh, &IntrinsicOptions::default(), Progress::NONE);
+            let l = l.unwrap_or_else(|error| panic!("{name}: {error}"));
+            surfaces += 1;
+            check_zeros(&format!("{name}, surface"), &(l.laplacian, l.masses), parts);
+        }
+    }
+    eprintln!("{graphs} graphs, {surfaces} surfaces of several components");
+    assert!(graphs > 20 && surfaces > 10, "{graphs} {surfaces}");
+}
+
+/// Weights and masses 1 for the edges and corners of faces.
+fn graph_laplacian(set: &IndexedFaceSet) -> (SparseMatrix, VertexMap<f64>) {
+    let mut edges: Vec<(u32, u32)> = Vec::new();
+    let mut masses = VertexMap::filled(set.vertex_count(), 0.0);
+    for (_, face) in set.faces().iter() {
+        for (k, &v) in face.iter().enumerate() {
+            let w = face[(k + 1) % face.len()];
+            masses[v] = 1.0;
+            if v != w {
+                edges.push((v.min(w).index() as u32, v.max(w).index() as u32));
+            }
+        }
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    let edges: Vec<(u32, u32, f64)> = edges.into_iter().map(|(v, w)| (v, w, 1.0)).collect();
+    (SparseMatrix::from_edges(set.vertex_count(), &edges).unwrap(), masses)
+}
+
+fn check_zeros(name: &str, (laplacian, masses): &(SparseMatrix, VertexMap<f64>), parts: usize) {
+    let rows = masses.values().iter().filter(|m| **m > 0.0).count();
+    // One more, which must not be zero, where there is one.
+    let count = (parts + 1).min(rows);
+    let basis = Eigenbasis::new(laplacian, masses, count, &EigenOptions::default(), Progress::NONE)
+        .unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert_eq!(basis.zero_count(), parts, "{name}: {:?}", basis.values());
+    let values = basis.values();
+    // Zero beside the next, or beside the largest there can be where there is no next.
+    let size = values.get(parts).copied().unwrap_or_else(|| laplacian.row_norm());
+    assert!(values[..parts].iter().all(|value| value.abs() < 1e-6 * size), "{name}: {values:?}");
 }
 
 fn check_mesh(path: &Path, mesh: &Mesh) {

@@ -1,6 +1,9 @@
 // CGAL behind the protocol of protocol.hpp.
 #include "protocol.hpp"
 
+// Jets are fitted by Eigen.
+#define CGAL_EIGEN3_ENABLED
+#include <CGAL/Monge_via_jet_fitting.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/compute_normal.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
@@ -18,6 +21,7 @@
 
 #include <limits>
 #include <memory>
+#include <set>
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 typedef CGAL::Simple_cartesian<double> Kernel;
@@ -252,6 +256,33 @@ void laplacian(Report& report, const Raw& raw, int repeat) {
     report.number("value", value);
 }
 
+// Jets of degree 4 fitted to the vertices of as many rings as have 18 of them: 15 coefficients and some to spare.
+// Curvatures are positive where the surface bends toward the given normal.
+void curvature(const Raw& raw, const Call& call) {
+    typedef CGAL::Monge_via_jet_fitting<Kernel> Fitting;
+    const auto mesh = built(raw);
+    std::vector<double> most, least;
+    for (const auto v : mesh->vertices()) {
+        std::vector<Mesh::Vertex_index> around{v};
+        std::set<Mesh::Vertex_index> seen{v};
+        for (std::size_t done = 0; around.size() < 18 && done < around.size();) {
+            const std::size_t ring = around.size();
+            for (; done < ring; ++done)
+                for (const auto w : vertices_around_target(halfedge(around[done], *mesh), *mesh))
+                    if (seen.insert(w).second) around.push_back(w);
+        }
+        std::vector<Point> points;
+        for (const auto w : around) points.push_back(mesh->point(w));
+        Fitting fitting;
+        auto form = fitting(points.begin(), points.end(), 4, 2);
+        form.comply_wrt_given_normal(pmp::compute_vertex_normal(v, *mesh));
+        most.push_back(form.principal_curvatures(0));
+        least.push_back(form.principal_curvatures(1));
+    }
+    column(call.out, "curvature_max", most);
+    column(call.out, "curvature_min", least);
+}
+
 void read(Report& report, const Call& call) {
     double vertices = 0, faces = 0;
     report.time(call.repeat, [&] {
@@ -284,6 +315,7 @@ int main(int count, char** arguments) {
             if (call.operation == "facts") facts(report, raw, call.out);
             else if (call.operation == "repair") repair(report, raw, call);
             else if (call.operation == "dijkstra") dijkstra(report, raw, call);
+            else if (call.operation == "curvature") curvature(raw, call);
             else if (call.operation == "build") report.time(call.repeat, [&] { return built(raw); });
             else if (call.operation == "memory") memory(report, [&] { return built(raw); });
             else if (call.operation == "rings") rings(report, raw, call.repeat);

@@ -46,6 +46,9 @@ pub(crate) struct Driver {
     pub(crate) name: String,
     program: PathBuf,
     first: Vec<String>,
+    /// Whether it gets one thread instead of all there are.
+    one_thread: bool,
+    patience: Duration,
 }
 
 /// The compiled drivers.
@@ -54,6 +57,8 @@ pub(crate) struct Peers {
     pub(crate) cgal: Driver,
     /// Absent where its packages are.
     pub(crate) cholmod: Option<Driver>,
+    /// Only for speed; absent where Python or its packages are.
+    pub(crate) scipy: Option<Driver>,
 }
 
 impl Peers {
@@ -91,23 +96,30 @@ impl Peers {
         let program = compile("openmesh", &folder, &openmesh.arguments)?;
         let cgal = compile("cgal", &folder, &["-I/usr/include/eigen3".into()])?;
         let cholmod = match cholmod(&folder) {
-            Ok(program) => Some(Driver { name: "CHOLMOD".into(), program, first: Vec::new() }),
+            Ok(program) => Some(Driver::new("CHOLMOD", program)),
             Err(error) => {
                 eprintln!("without CHOLMOD: {error}\nget it by\n  {CHOLMOD_PACKAGES}");
                 None
             }
         };
+        // Where speed does not matter nothing is installed for it.
+        let scipy = (wanted == Wanted::Optimized).then(|| scipy(&folder)).and_then(|driver| {
+            driver.inspect_err(|error| eprintln!("without SciPy: {error}")).ok()
+        });
         Ok(Peers {
-            openmesh: Driver { name: openmesh.name.into(), program, first: Vec::new() },
-            cgal: Driver { name: "CGAL".into(), program: cgal, first: Vec::new() },
+            openmesh: Driver::new(openmesh.name, program),
+            cgal: Driver::new("CGAL", cgal),
             cholmod,
+            scipy,
         })
     }
 }
 
 impl fmt::Display for Peers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for driver in [&self.openmesh, &self.cgal].into_iter().chain(&self.cholmod) {
+        for driver in
+            [&self.openmesh, &self.cgal].into_iter().chain(&self.cholmod).chain(&self.scipy)
+        {
             writeln!(f, "{}: {}", driver.name, driver.program.display())?;
         }
         Ok(())
@@ -118,7 +130,22 @@ impl Driver {
     /// Our own driver: xtask itself.
     pub(crate) fn ours() -> Outcome<Driver> {
         let program = std::env::current_exe()?;
-        Ok(Driver { name: "dgp".into(), program, first: vec!["drive".into()] })
+        Ok(Driver { first: vec!["drive".into()], ..Driver::new("dgp", program) })
+    }
+
+    fn new(name: &str, program: PathBuf) -> Driver {
+        let name = name.into();
+        Driver { name, program, first: Vec::new(), one_thread: false, patience: PATIENCE }
+    }
+
+    /// The same driver with one thread.
+    pub(crate) fn on_one_thread(self) -> Driver {
+        Driver { one_thread: true, ..self }
+    }
+
+    /// The same driver, given so much time.
+    pub(crate) fn within(self, patience: Duration) -> Driver {
+        Driver { patience, ..self }
     }
 
     /// The same driver by another name in tables.
@@ -130,13 +157,37 @@ impl Driver {
     pub(crate) fn call(&self, operation: &str, input: &Path, options: &[&str]) -> Outcome<Value> {
         let mut command = Command::new(&self.program);
         command.args(&self.first).arg(operation).arg(input).args(options);
-        let text = shell::output_within(&mut command, PATIENCE)?;
+        if self.one_thread {
+            for pool in ["RAYON_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"] {
+                command.env(pool, "1");
+            }
+        }
+        let text = shell::output_within(&mut command, self.patience)?;
         serde_json::from_str(&text)
             .map_err(|error| format!("{} printed no JSON: {error}: {text}", self.name).into())
     }
 }
 
-/// The driver of CHOLMOD, with one thread of OpenBLAS.
+/// The driver of SciPy, in an environment of its own with the packages that its list pins.
+fn scipy(folder: &Path) -> Outcome<Driver> {
+    let sources = shell::root().join("xtask/reference");
+    let list = sources.join("eigsh.requirements.txt");
+    let (environment, stamp) = (folder.join("scipy"), folder.join("scipy.stamp"));
+    let wanted = fs::read_to_string(&list)?;
+    if !fs::read_to_string(&stamp).is_ok_and(|text| text == wanted) {
+        eprintln!("installing the packages of the reference driver eigsh");
+        let path = environment.to_string_lossy().into_owned();
+        shell::output(&mut shell::command("python3", &["-m", "venv", &path]))?;
+        let mut pip = Command::new(environment.join("bin/pip"));
+        shell::output(pip.args(["install", "--quiet", "--requirement"]).arg(&list))?;
+        fs::write(&stamp, wanted)?;
+    }
+    let script = sources.join("eigsh.py").to_string_lossy().into_owned();
+    let driver = Driver::new("SciPy", environment.join("bin/python"));
+    Ok(Driver { first: vec![script], ..driver })
+}
+
+/// The driver of CHOLMOD.
 fn cholmod(folder: &Path) -> Outcome<PathBuf> {
     let include = "/usr/include/suitesparse";
     if !Path::new(include).join("cholmod.h").exists() {

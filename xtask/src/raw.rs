@@ -41,17 +41,19 @@ fn parse(bytes: &[u8]) -> Option<Outcome<IndexedFaceSet>> {
     let (positions, rest) = rest.split_at_checked(24 * vertices)?;
     let (starts, rest) = rest.split_at_checked(4 * (faces + 1))?;
     let (corners, _) = rest.split_at_checked(4 * corners)?;
-    let positions: Vec<DVec3> = doubles(positions).chunks_exact(3).map(DVec3::from_slice).collect();
-    let starts = integers(starts);
+    // Nothing is made and freed again, so that what a mesh built from this holds can be measured.
+    let mut coordinates = numbers(positions);
+    let positions: Vec<DVec3> = (0..vertices)
+        .map(|_| DVec3::from_array([(); 3].map(|()| coordinates.next().expect("24 bytes each"))))
+        .collect();
     let corners: Vec<VertexId> = integers(corners).map(VertexId::new).collect();
-    let starts: Vec<usize> = starts.collect();
-    let uniform = starts.windows(2).all(|pair| pair[1] - pair[0] == 3);
-    let list = if uniform {
+    let faces = integers(starts).zip(integers(starts).skip(1));
+    let list = if faces.clone().all(|(start, end)| end - start == 3) {
         FaceList::from_corners(corners, 3)
     } else {
         let mut list = FaceList::new();
-        for pair in starts.windows(2) {
-            list.push(corners.get(pair[0]..pair[1])?);
+        for (start, end) in faces {
+            list.push(corners.get(start..end)?);
         }
         list
     };
@@ -60,10 +62,14 @@ fn parse(bytes: &[u8]) -> Option<Outcome<IndexedFaceSet>> {
 
 /// Little-endian doubles.
 pub(crate) fn doubles(bytes: &[u8]) -> Vec<f64> {
-    bytes.as_chunks::<8>().0.iter().map(|&chunk| f64::from_le_bytes(chunk)).collect()
+    numbers(bytes).collect()
 }
 
-fn integers(bytes: &[u8]) -> impl Iterator<Item = usize> + '_ {
+fn numbers(bytes: &[u8]) -> impl Iterator<Item = f64> + '_ {
+    bytes.as_chunks::<8>().0.iter().map(|&chunk| f64::from_le_bytes(chunk))
+}
+
+fn integers(bytes: &[u8]) -> impl Iterator<Item = usize> + Clone + '_ {
     bytes.as_chunks::<4>().0.iter().map(|&chunk| u32::from_le_bytes(chunk) as usize)
 }
 

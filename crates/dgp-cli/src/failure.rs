@@ -31,6 +31,19 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Laplace(#[from] dgp::laplace::Error),
 
+    /// A matrix.
+    #[error("{0}")]
+    Sparse(#[from] dgp::sparse::Error),
+
+    /// A text that is no mesh, such as a matrix.
+    #[error("cannot read {}: {source}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+
     /// A picture.
     #[error("{0}")]
     View(#[from] dgp::view::Error),
@@ -121,7 +134,9 @@ impl Failure {
     /// The same, with the file it is about.
     pub(crate) fn in_file(self, path: &Path) -> Self {
         match self {
-            Failure::Usage(_) | Failure::InFile { .. } | Failure::Io(_) => self,
+            Failure::Usage(_) | Failure::InFile { .. } | Failure::Io(_) | Failure::Text { .. } => {
+                self
+            }
             other => Failure::InFile { path: path.to_owned(), source: Box::new(other) },
         }
     }

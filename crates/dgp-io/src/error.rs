@@ -33,7 +33,7 @@ pub enum Error {
     },
 
     /// Not a regular file: a folder, a device, a pipe.
-    #[error("{} is {kind}; name a regular file, or read its bytes and pass them to `read_bytes`", path.display())]
+    #[error("{} is {kind}; name a regular file, or go by `read_bytes` and `write_to`", path.display())]
     NotAFile {
         /// What was named.
         path: PathBuf,

@@ -8,6 +8,7 @@ use dgp_laplace::{
         IntrinsicOptions, PointCloudOptions, intrinsic_delaunay, point_cloud_laplacian,
         tufted_laplacian,
     },
+    kernel::{HeatKernel, Neighbors, gaussian_laplacian, mesh_heat_laplacian},
     laplacian::{
         MassKind, cotangent_laplacian, mass_matrix, mean_value_laplacian, uniform_laplacian,
     },
@@ -44,6 +45,12 @@ fn matrices(criterion: &mut Criterion) {
             bench("point_cloud_laplacian", &mut || {
                 let options = PointCloudOptions::default();
                 drop(point_cloud_laplacian(mesh.positions(), &options, Progress::NONE));
+            });
+            bench("gaussian_laplacian", &mut || {
+                drop(gaussian_laplacian(mesh.positions(), 1e4, Neighbors::Nearest(12)));
+            });
+            bench("mesh_heat_laplacian", &mut || {
+                drop(mesh_heat_laplacian(&mesh, 1e-4, &HeatKernel { cutoff: 1e-4 }));
             });
             let values = mesh.positions().map(|p| p.x);
             bench("heat_step", &mut || drop(heat_step(&mesh, &values, 1e-3, Progress::NONE)));

@@ -21,6 +21,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(test)]
+mod bad_input_tests;
 pub mod differential;
 mod error;
 pub mod flow;
@@ -31,6 +33,8 @@ mod nearest;
 pub mod smooth;
 mod solve;
 pub mod spectral;
+#[cfg(test)]
+mod test_shapes;
 mod unit;
 
 pub use error::Error;

@@ -2,12 +2,12 @@
 //!
 //! Structure of arrays with paired half-edges (Kettner 1999; Botsch et al., *Polygon Mesh
 //! Processing*, ch. 2): the half-edges of edge e are 2e and 2e + 1, so twin and edge are arithmetic
-//! and cannot disagree. Stored are next, prev, to and face of each half-edge and one half-edge of each
-//! vertex and face: 54 bytes per triangle.
+//! and cannot disagree. Stored are prev, to and face of each half-edge and one half-edge of each vertex and
+//! face: 42 bytes per triangle. What follows a half-edge is found from what precedes it (decision 0006).
 //!
 //! Invariants, which [`Connectivity::from_faces`] establishes and every edit keeps:
 //!
-//! - next and prev are inverse to each other and stay within a face, or within a hole;
+//! - each half-edge precedes one other, of the same face or hole;
 //! - `to(h) = from(next(h))`, and `from(h) ≠ to(h)`;
 //! - all half-edges that leave a vertex form one orbit: a fan with at most one gap;
 //! - the half-edge of a boundary vertex is the one with no face;
@@ -23,7 +23,6 @@ use crate::{
 /// See [`Mesh`](crate::Mesh) for a mesh with positions, which has all methods of this type.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Connectivity {
-    pub(crate) next: HalfedgeMap<HalfedgeId>,
     pub(crate) prev: HalfedgeMap<HalfedgeId>,
     pub(crate) to: HalfedgeMap<VertexId>,
     pub(crate) face: HalfedgeMap<Option<FaceId>>,
@@ -107,13 +106,13 @@ impl Connectivity {
     /// How many half-edges there are, two for each edge.
     #[inline]
     pub fn halfedge_count(&self) -> usize {
-        self.next.len()
+        self.prev.len()
     }
 
     /// How many edges there are.
     #[inline]
     pub fn edge_count(&self) -> usize {
-        self.next.len() / 2
+        self.prev.len() / 2
     }
 
     /// How many faces there are.

@@ -43,17 +43,21 @@ impl Mesh {
             return Err(NotManifold::NonFinite { vertex }.into());
         }
         let (connectivity, corner_halfedges) = assemble(set.vertex_count(), set.faces())?;
-        let mut mesh = Mesh::from_parts(connectivity, set.positions().clone());
-        mesh.attributes.vertex = set.vertex_attributes.clone();
-        mesh.attributes.face = set.face_attributes.clone();
+        let mut corner_attributes = AttributeTable::new(connectivity.halfedge_count());
         if !set.corner_attributes.is_empty() {
-            let mut corner = vec![None; mesh.halfedge_count()];
+            let mut corner = vec![None; connectivity.halfedge_count()];
             for (c, &h) in corner_halfedges.iter().enumerate() {
                 corner[h as usize] = Some(CornerId::new(c));
             }
-            mesh.attributes.corner =
+            corner_attributes =
                 set.corner_attributes.gather(corner.len(), |h: HalfedgeId| corner[h.index()]);
         }
+        // Leaves its room to the positions.
+        drop(corner_halfedges);
+        let mut mesh = Mesh::from_parts(connectivity, set.positions().clone());
+        mesh.attributes.vertex = set.vertex_attributes.clone();
+        mesh.attributes.face = set.face_attributes.clone();
+        mesh.attributes.corner = corner_attributes;
         Ok(mesh)
     }
 

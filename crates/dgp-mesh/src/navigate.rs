@@ -25,9 +25,37 @@ use crate::{Connectivity, EdgeId, FaceId, HalfedgeId, VertexId};
 /// One step from a half-edge.
 impl Connectivity {
     /// The following side of the same face, or of the same hole.
+    ///
+    /// Not stored: two steps back in a triangle, three in a quadrilateral, else around the face or
+    /// around the vertex, whichever is shorter. Cost: O(min(degree, valence)).
     #[inline]
     pub fn next(&self, h: HalfedgeId) -> HalfedgeId {
-        self.next[h]
+        let two_back = self.prev(self.prev(h));
+        let three_back = self.prev(two_back);
+        if three_back == h {
+            two_back
+        } else if self.prev(three_back) == h {
+            three_back
+        } else {
+            self.search_next(h)
+        }
+    }
+
+    fn search_next(&self, h: HalfedgeId) -> HalfedgeId {
+        // Sides before `h`, and what leaves the vertex where `h` ends.
+        let (mut side, mut spoke) = (h, h.twin());
+        loop {
+            let preceding = self.prev(side);
+            if preceding == h {
+                return side;
+            }
+            side = preceding;
+            let arriving = self.prev(spoke);
+            if arriving == h {
+                return spoke;
+            }
+            spoke = arriving.twin();
+        }
     }
 
     /// The preceding side of the same face, or of the same hole.
@@ -103,7 +131,7 @@ impl Connectivity {
     /// The number of edges at `v`.
     #[inline]
     pub fn valence(&self, v: VertexId) -> usize {
-        orbit(self.vertex_halfedge[v], |h| self.cw(h)).count()
+        orbit(self.vertex_halfedge[v], |h| self.ccw(h)).count()
     }
 
     /// The half-edge from `v` to `w`, if an edge joins them.
@@ -154,8 +182,9 @@ impl Connectivity {
     #[inline]
     pub fn triangle(&self, f: FaceId) -> Option<[VertexId; 3]> {
         let h = self.face_halfedge[f];
-        let (g, k) = (self.next(h), self.prev(h));
-        (self.next(g) == k).then(|| [self.to(k), self.to(h), self.to(g)])
+        let k = self.prev(h);
+        let g = self.prev(k);
+        (self.prev(g) == h).then(|| [self.to(k), self.to(h), self.to(g)])
     }
 
     /// The half-edges of the face or hole that `h` runs along, from `h` on.

@@ -3,7 +3,7 @@
 //! Builds and edits keep these invariants, so that a mesh can only fail here by a bug of this crate.
 //! Tests call this after every edit.
 
-use crate::{Connectivity, EdgeId, FaceId, HalfedgeId, Mesh, VertexId, VertexMap};
+use crate::{Connectivity, EdgeId, FaceId, HalfedgeId, HalfedgeMap, Mesh, VertexId, VertexMap};
 
 /// An invariant of [`Connectivity`] or [`Mesh`] that does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -37,11 +37,13 @@ pub enum Invalid {
         /// The face.
         face: FaceId,
     },
-    /// next and prev are inverse to each other.
-    #[error("{halfedge} is not the prev of its next")]
-    NextPrev {
+    /// Each half-edge precedes one other.
+    #[error("{halfedge} precedes {count} half-edges instead of one")]
+    Precedes {
         /// The half-edge.
         halfedge: HalfedgeId,
+        /// How many it precedes.
+        count: usize,
     },
     /// A half-edge and its next are of the same face, or both of none.
     #[error("{halfedge} and its next are not of the same face")]
@@ -168,14 +170,12 @@ impl Connectivity {
         let halfedges = self.halfedge_count();
         lengths_agree(&[
             ("half-edges", halfedges, 2 * (halfedges / 2)),
-            ("prevs", self.prev.len(), halfedges),
             ("ends", self.to.len(), halfedges),
             ("faces of half-edges", self.face.len(), halfedges),
         ])?;
         let (vertices, faces) = (self.vertex_count(), self.face_count());
         let missing = self.halfedges().find(|&h| {
-            let links = [self.next[h], self.prev[h]];
-            links.iter().any(|g| g.index() >= halfedges)
+            self.prev[h].index() >= halfedges
                 || self.to[h].index() >= vertices
                 || self.face[h].is_some_and(|f| f.index() >= faces)
         });
@@ -194,11 +194,15 @@ impl Connectivity {
     }
 
     fn halfedges_agree(&self) -> Result<(), Invalid> {
+        let mut precedes = HalfedgeMap::filled(self.halfedge_count(), 0);
+        for halfedge in self.halfedges() {
+            precedes[self.prev(halfedge)] += 1;
+        }
+        if let Some((halfedge, &count)) = precedes.iter().find(|&(_, &count)| count != 1) {
+            return Err(Invalid::Precedes { halfedge, count });
+        }
         for halfedge in self.halfedges() {
             let next = self.next(halfedge);
-            if self.prev(next) != halfedge || self.next(self.prev(halfedge)) != halfedge {
-                return Err(Invalid::NextPrev { halfedge });
-            }
             if self.face(next) != self.face(halfedge) {
                 return Err(Invalid::FaceChanges { halfedge });
             }
@@ -219,7 +223,7 @@ impl Connectivity {
     }
 
     fn vertices_are_fans(&self) -> Result<(), Invalid> {
-        // next and prev are permutations by now, so orbits end.
+        // prev is a permutation by now, so orbits end.
         let mut met = vec![false; self.halfedge_count()];
         for vertex in self.vertices() {
             let Some(start) = self.vertex_halfedge(vertex) else { continue };
@@ -315,7 +319,7 @@ mod tests {
     fn names_must_exist() {
         let (h, v, f) = (HalfedgeId::new(0), VertexId::new(0), FaceId::new(0));
         let far = HalfedgeId::new(99);
-        assert_eq!(broken(|m| m.next[h] = far), Invalid::HalfedgeNamesMissing { halfedge: h });
+        assert_eq!(broken(|m| m.prev[h] = far), Invalid::HalfedgeNamesMissing { halfedge: h });
         assert_eq!(
             broken(|m| m.to[h] = VertexId::new(4)),
             Invalid::HalfedgeNamesMissing { halfedge: h }
@@ -325,13 +329,13 @@ mod tests {
             Invalid::VertexNamesMissing { vertex: v }
         );
         assert_eq!(broken(|m| m.face_halfedge[f] = far), Invalid::FaceNamesMissing { face: f });
-        assert!(matches!(broken(|m| m.prev.truncate(3)), Invalid::Length { what: "prevs", .. }));
+        assert!(matches!(broken(|m| m.to.truncate(3)), Invalid::Length { what: "ends", .. }));
     }
 
     #[test]
-    fn links_must_be_inverse_and_stay_within_a_face() {
+    fn each_half_edge_must_precede_one_of_its_face() {
         let h = side(&strip(), 0, 1);
-        assert!(matches!(broken(|m| m.next[h] = h), Invalid::NextPrev { .. }));
+        assert!(matches!(broken(|m| m.prev[h] = h), Invalid::Precedes { .. }));
         assert!(matches!(broken(|m| m.face[h] = None), Invalid::FaceChanges { .. }));
         assert!(matches!(broken(|m| m.to[h] = VertexId::new(3)), Invalid::Apart { .. }));
     }
@@ -340,8 +344,7 @@ mod tests {
     fn edges_must_have_two_ends_and_a_face() {
         let alone = |m: &mut Connectivity, ends: [usize; 2]| {
             for (k, v) in ends.into_iter().enumerate() {
-                let h = m.next.push(HalfedgeId::new(10 + (k ^ 1)));
-                m.prev.push(HalfedgeId::new(h.index() ^ 1));
+                m.prev.push(HalfedgeId::new(10 + (k ^ 1)));
                 m.to.push(VertexId::new(v));
                 m.face.push(None);
             }
@@ -387,13 +390,12 @@ mod tests {
         let mut mesh = Connectivity::from_faces(4, &FaceList::from_indices(&[[0, 1, 2]])).unwrap();
         let (first, last) = (side(&mesh, 0, 1), side(&mesh, 2, 0));
         let [out, back] = [6, 7].map(HalfedgeId::new);
-        for (prev, next, end) in [(last, back, 3), (out, first, 0)] {
-            mesh.next.push(next);
+        for (prev, end) in [(last, 3), (out, 0)] {
             mesh.prev.push(prev);
             mesh.to.push(VertexId::new(end));
             mesh.face.push(Some(f));
         }
-        (mesh.next[last], mesh.prev[first]) = (out, back);
+        mesh.prev[first] = back;
         mesh.vertex_halfedge[VertexId::new(3)] = Some(back);
         let vertex = VertexId::new(0);
         assert_eq!(mesh.validate(), Err(Invalid::RepeatedVertex { face: f, vertex }));
@@ -407,14 +409,13 @@ mod tests {
         let t = side(&mesh, 1, 0);
         let [x, y] = [12, 13].map(HalfedgeId::new);
         let (before, after, face) = (mesh.prev(t), mesh.next(t), mesh.face(t));
-        for (next, prev, end, face) in [(t, t, 1, None), (after, before, 0, face)] {
-            mesh.next.push(next);
+        for (prev, end, face) in [(t, 1, None), (before, 0, face)] {
             mesh.prev.push(prev);
             mesh.to.push(VertexId::new(end));
             mesh.face.push(face);
         }
-        (mesh.next[before], mesh.prev[after]) = (y, y);
-        (mesh.next[t], mesh.prev[t], mesh.face[t]) = (x, x, None);
+        mesh.prev[after] = y;
+        (mesh.prev[t], mesh.face[t]) = (x, None);
         mesh.vertex_halfedge[VertexId::new(0)] = Some(x);
         mesh.vertex_halfedge[VertexId::new(1)] = Some(t);
         if let Some(f) = face {

@@ -35,3 +35,14 @@ pub(crate) fn sum(len: usize, f: impl Fn(Range<usize>) -> f64 + Sync + Send) -> 
     }
     (0..len.div_ceil(BLOCK)).map(|b| f(range(b))).sum()
 }
+
+/// Both results, computed at the same time if there are threads.
+pub(crate) fn join<A: Send, B: Send>(
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    #[cfg(feature = "rayon")]
+    return rayon::join(a, b);
+    #[cfg(not(feature = "rayon"))]
+    (a(), b())
+}

@@ -84,7 +84,7 @@ fn fill_of_grids_stays_below_the_bound_of_george() {
 
 #[test]
 fn fill_of_surfaces_is_near_that_of_minimum_degree_or_below() {
-    for (name, surface, ratio) in [("sphere", sphere(6), 0.95), ("gyroid", gyroid(40), 1.2)] {
+    for (name, surface, ratio) in [("sphere", sphere(6), 0.95), ("gyroid", gyroid(40), 0.9)] {
         let matrix = system(&surface);
         let ours = fill(&matrix, Ordering::Dissection);
         let minimum = fill(&matrix, Ordering::MinimumDegree);
@@ -109,19 +109,24 @@ fn numbering_hardly_matters() {
 
 #[test]
 fn order_and_solution_are_the_same_for_any_number_of_threads() {
-    let matrix = system(&sphere(5));
-    let rhs: Vec<f64> = (0..9 * matrix.rows()).map(|i| (i as f64).sin()).collect();
-    let run = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let options = CholeskyOptions { ordering: Ordering::Dissection };
-            let cholesky = dgp_sparse::Cholesky::new(&matrix, &options, Progress::NONE).unwrap();
-            (dissected(&matrix), cholesky.solve_many(&rhs).unwrap())
-        })
-    };
-    let one = run(1);
-    assert_eq!(one, run(2));
-    assert_eq!(one, run(8));
+    // Subtrees of both are shared among threads; of the second several coarse cuts are compared.
+    for surface in [sphere(5), gyroid(40)] {
+        let matrix = system(&surface);
+        let rhs: Vec<f64> = (0..9 * matrix.rows()).map(|i| (i as f64).sin()).collect();
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let options = CholeskyOptions { ordering: Ordering::Dissection };
+                let cholesky =
+                    dgp_sparse::Cholesky::new(&matrix, &options, Progress::NONE).unwrap();
+                let order = cholesky.symbolic().order().to_vec();
+                (order, cholesky.solve_many(&rhs).unwrap())
+            })
+        };
+        let one = run(1);
+        assert!(one == run(2));
+        assert!(one == run(8));
+    }
 }
 
 #[test]

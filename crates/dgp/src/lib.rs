@@ -16,6 +16,7 @@
 //! | have the Laplacian of a mesh or a cloud | [`laplace::laplacian`], [`laplace::intrinsic`], [`laplace::kernel`] |
 //! | remove noise, let heat or curvature flow | [`laplace::smooth`], [`laplace::flow`] |
 //! | know the waves of a shape, cut, compress, match it | [`laplace::spectral`] |
+//! | refine cages into smooth surfaces, with creases | [`subdiv`] |
 //! | solve sparse systems, find eigenpairs | [`sparse`] |
 //! | draw pictures, plot curves | [`view`] |
 //! | see how far a long computation is, and stop it | [`mesh::Progress`] |
@@ -57,4 +58,5 @@ pub use dgp_io as io;
 pub use dgp_laplace as laplace;
 pub use dgp_mesh as mesh;
 pub use dgp_sparse as sparse;
+pub use dgp_subdiv as subdiv;
 pub use dgp_view as view;

@@ -7,7 +7,7 @@ use dgp_laplace::{
         IntrinsicLaplacian, IntrinsicOptions, PointCloudOptions, intrinsic_delaunay,
         point_cloud_laplacian, tufted_laplacian,
     },
-    kernel::{HeatKernel, Neighbors, gaussian_laplacian, mesh_heat_laplacian},
+    kernel::{HeatKernel, Neighbors, gaussian_laplacian, mesh_heat_laplacian, nearest_distances},
     laplacian::{
         MassKind, cotangent_laplacian, laplacian_report, mass_matrix, mean_value_laplacian,
         normalized_laplacian, random_walk_laplacian, uniform_laplacian,
@@ -15,6 +15,9 @@ use dgp_laplace::{
     smooth::{
         BilateralOptions, BilateralScheme, CotangentOptions, FaceNeighborhood, ImplicitOptions,
         ImplicitWeight, bilateral, cotangent, implicit,
+    },
+    spectral::{
+        Eigenbasis, PartitionOptions, fiedler, heat_kernel_diagonal, partition, signature_times,
     },
 };
 use dgp_mesh::{
@@ -24,7 +27,7 @@ use dgp_mesh::{
     measure::edge_length_range,
     topology::trivalent_balance,
 };
-use dgp_sparse::SparseMatrix;
+use dgp_sparse::{EigenOptions, SparseMatrix};
 
 use crate::{
     outcome::Outcome,
@@ -51,6 +54,7 @@ pub(crate) fn laplacians() -> Vec<Algorithm> {
     let mut all = graphs();
     all.extend(matrices());
     all.extend(solving());
+    all.extend(waves());
     all
 }
 
@@ -93,10 +97,37 @@ fn matrices() -> Vec<Algorithm> {
         set("gaussian_laplacian", |s, _| {
             matrix(gaussian_laplacian(s.positions(), 1.0, Neighbors::Nearest(6)))
         }),
+        set("nearest_distances", |s, _| Outcome::of(&nearest_distances(s.positions()))),
         mesh("mesh_heat_laplacian", |m, _| {
             let h = area_of_edges(m);
             let found = mesh_heat_laplacian(m, h, &HeatKernel { cutoff: 0.1 });
             matrix(found.map(|found| found.0))
+        }),
+    ]
+}
+
+fn waves() -> Vec<Algorithm> {
+    vec![
+        mesh("eigenfunctions and their heat", |m, p| {
+            let found = intrinsic_delaunay(m, &IntrinsicOptions::default(), p.part(0.0, 0.2));
+            let result = found.and_then(|found| {
+                let (options, part) = (EigenOptions::default(), p.part(0.2, 1.0));
+                let basis = Eigenbasis::new(&found.laplacian, &found.masses, 4, &options, part)?;
+                let time = signature_times(&basis, 1)?[0];
+                Ok((basis.values().to_vec(), heat_kernel_diagonal(&basis, time)?))
+            });
+            Outcome::of(&result)
+        }),
+        mesh("fiedler", |m, p| {
+            let ones = m.map_vertices(|_| 1.0);
+            let found = uniform_laplacian(m).and_then(|l| fiedler(&l, &ones, p));
+            Outcome::of(&found.map(|found| (found.value, found.vector)))
+        }),
+        mesh("partition", |m, p| {
+            let ones = m.map_vertices(|_| 1.0);
+            let options = PartitionOptions { attempts: 2, ..PartitionOptions::default() };
+            let found = uniform_laplacian(m).and_then(|l| partition(&l, &ones, 3, &options, p));
+            Outcome::of(&found.map(|found| found.part))
         }),
     ]
 }

@@ -11,6 +11,12 @@ pub(super) struct Case {
     pub(super) cgal: Option<&'static str>,
     /// Orders for which CHOLMOD does the same.
     pub(super) cholmod: &'static [&'static str],
+    /// The operation for which SciPy does the same.
+    pub(super) scipy: Option<&'static str>,
+    /// Whether every driver gets one thread instead of all there are.
+    pub(super) one_thread: bool,
+    /// Inputs with more triangles are left out.
+    pub(super) largest: usize,
     pub(super) data: Data,
     pub(super) figure: Figure,
 }
@@ -48,6 +54,9 @@ pub(super) fn all() -> Vec<Case> {
         openmesh: Some(operation),
         cgal: Some(operation),
         cholmod: &[],
+        scipy: None,
+        one_thread: false,
+        largest: usize::MAX,
         data: Data::Raw,
         figure: Figure::Time,
     };
@@ -81,7 +90,14 @@ pub(super) fn all() -> Vec<Case> {
             openmesh: None,
             cgal: None,
             cholmod: &["amd", "metis"],
-            ..case("cholesky", "order, factor and solve L + M with 1 thread", "cholesky")
+            ..case("cholesky", "order, factor and solve L + M with all threads", "cholesky")
+        },
+        Case {
+            openmesh: None,
+            cgal: None,
+            cholmod: &["amd", "metis"],
+            one_thread: true,
+            ..case("cholesky-1", "order, factor and solve L + M with 1 thread", "cholesky")
         },
         Case {
             openmesh: None,
@@ -96,6 +112,20 @@ pub(super) fn all() -> Vec<Case> {
             ..case("repair", "faces with one in a hundred turned over, made a mesh", "repair")
         },
     ];
+    for (name, what) in [
+        ("eigenpairs-50", "the 50 smallest eigenpairs of the cotangent Laplacian"),
+        ("eigenpairs-100", "the 100 smallest eigenpairs of the cotangent Laplacian"),
+        ("eigenpairs-300", "the 300 smallest eigenpairs of the cotangent Laplacian"),
+    ] {
+        let largest = 400_000;
+        cases.push(Case {
+            openmesh: None,
+            cgal: None,
+            scipy: Some(name),
+            largest,
+            ..case(name, what, name)
+        });
+    }
     for (read, write, file, binary) in [
         ("read-obj", "write-obj", "mesh.obj", false),
         ("read-ply", "write-ply", "mesh.ply", true),

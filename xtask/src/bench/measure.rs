@@ -1,6 +1,6 @@
 //! Alternating runs and their medians.
 
-use std::{collections::BTreeMap, fmt::Write, path::Path};
+use std::{collections::BTreeMap, fmt::Write, path::Path, time::Duration};
 
 use serde_json::{Value, json};
 
@@ -10,6 +10,9 @@ use super::{
     inputs::Input,
 };
 use crate::peers::{Driver, Peers};
+
+/// How long a driver may look for eigenpairs.
+const PATIENCE: Duration = Duration::from_secs(900);
 
 /// One case on one input.
 pub(super) struct Row {
@@ -40,6 +43,9 @@ pub(super) fn case(
     effort: Effort,
     folder: &Path,
 ) -> Option<Row> {
+    if input.triangles > case.largest {
+        return None;
+    }
     let (path, out) = match (case.data, &input.files) {
         (Data::Soup, _) => (input.soup.clone(), None),
         (Data::Raw, _) => (input.raw.clone(), None),
@@ -57,9 +63,21 @@ pub(super) fn case(
                 .map(|&order| (cholmod.named(format!("{} {order}", cholmod.name)), order)),
         );
     }
+    if let (Some(scipy), Some(operation)) = (&peers.scipy, case.scipy) {
+        drivers.push((scipy.clone(), operation));
+    }
+    for (driver, _) in &mut drivers {
+        if case.scipy.is_some() {
+            *driver = driver.clone().within(PATIENCE);
+        }
+        if case.one_thread {
+            *driver = driver.clone().on_one_thread();
+        }
+    }
 
     let (rounds, repeat) = match effort {
         Effort::Quick => (1, "1"),
+        Effort::Full if case.scipy.is_some() => (3, "1"),
         Effort::Full if input.triangles > 1_000_000 => (3, "2"),
         Effort::Full => (5, "3"),
     };

@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 25] = [
+pub(crate) const QUANTITIES: [(&str, &str); 26] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -36,6 +36,7 @@ pub(crate) const QUANTITIES: [(&str, &str); 25] = [
     ("area", "1e-12 · Σ L²"),
     ("volume", "1e-12 · area · |x|"),
     ("distances", "1e-12 · largest"),
+    ("principal_curvatures", "both within (h κ)² κ of the exact ones"),
     ("repaired_points", "equal"),
     ("repaired_edges", "equal"),
     ("repaired_faces", "equal"),

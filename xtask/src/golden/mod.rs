@@ -4,6 +4,7 @@
 //! compared with its tolerance. docs/book/golden.md names the differences of convention.
 
 mod compare;
+mod estimates;
 mod facts;
 mod inputs;
 mod stored;
@@ -46,6 +47,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     for input in inputs::real()? {
         answers(&peers, &folder, &input, &mut table)?;
     }
+    estimates::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

@@ -4,17 +4,22 @@ mod check;
 mod completions;
 mod compress;
 mod convert;
+mod correspond;
 mod curvature;
 mod demo;
 mod edit;
 mod geodesic;
+mod heat;
 mod info;
+mod laplacian;
 mod manual;
 mod partition;
 mod render;
 mod repair;
 mod scalars;
+mod shape;
 mod smooth;
+mod solve;
 mod spectrum;
 
 use std::path::Path;
@@ -42,12 +47,22 @@ pub(crate) enum Command {
     Geodesic(geodesic::Geodesic),
     /// Gaussian, mean and principal curvatures at the vertices
     Curvature(curvature::Curvature),
+    /// The matrices of a Laplacian and its masses, checked and written
+    Laplacian(laplacian::Laplacian),
     /// The lowest eigenvalues and eigenfunctions of a Laplacian
     Spectrum(spectrum::Spectrum),
     /// Cut a surface into parts where little holds them together
     Partition(partition::Partition),
     /// Keep the first waves of a shape; what that costs and loses
     Compress(compress::Compress),
+    /// Heat that spreads from vertices, or the heat kernel signature of all
+    Heat(heat::Heat),
+    /// Which point of one shape is which of another
+    Correspond(correspond::Correspond),
+    /// Solve a sparse system, or find the smallest eigenvalues of a matrix
+    Solve(solve::Solve),
+    /// Make a shape: regular solids, Goldberg polyhedra, spheres, tori, …
+    Shape(shape::Shape),
     /// Draw meshes into a PNG
     Render(render::Render),
     /// Run the whole chain on a built-in scan, or on a file, into a folder with pictures

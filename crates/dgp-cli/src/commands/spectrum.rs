@@ -86,6 +86,11 @@ impl Operator {
         })
     }
 
+    /// Whether it has the lengths of the surface in it, and not the graph alone.
+    pub(crate) fn knows_lengths(self) -> bool {
+        self.laplacian != LaplacianName::Uniform
+    }
+
     /// The name as on the command line.
     pub(crate) fn name(self) -> String {
         self.laplacian.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned())

@@ -2,6 +2,7 @@
 
 mod elements;
 mod folder;
+mod operators;
 mod spectra;
 mod texts;
 

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::folder::{Dgp, error};
 
 /// A mesh as the text of an OFF file.
-fn off(mesh: &Mesh) -> String {
+pub(crate) fn off(mesh: &Mesh) -> String {
     let mut text = format!("OFF\n{} {} 0\n", mesh.vertex_count(), mesh.face_count());
     for p in mesh.positions().values() {
         writeln!(text, "{} {} {}", p.x, p.y, p.z).unwrap();

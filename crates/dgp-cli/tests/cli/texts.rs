@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 20] = [
     "info",
     "check",
     "convert",
@@ -10,6 +10,15 @@ const COMMANDS: [&str; 11] = [
     "smooth",
     "edit",
     "geodesic",
+    "curvature",
+    "spectrum",
+    "partition",
+    "compress",
+    "laplacian",
+    "heat",
+    "correspond",
+    "solve",
+    "shape",
     "render",
     "demo",
     "completions",

@@ -102,4 +102,6 @@ fn delaunay_report(
 }
 
 #[cfg(test)]
+mod cloud_tests;
+#[cfg(test)]
 mod tests;

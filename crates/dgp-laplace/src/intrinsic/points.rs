@@ -1,18 +1,24 @@
 //! A Laplacian for points without faces: local Delaunay triangles, then the tufted cover.
 //!
 //! Around each point its neighbors are projected to the plane that fits them best, where the Voronoi cell of
-//! the point tells its Delaunay neighbors; consecutive ones make triangles with it. Where the points
-//! are regular each triangle is found from all three corners, where not, from some: all of them together,
-//! each counting a third, are triangles that form no manifold, and have a
-//! [tufted Laplacian](super::tufted_laplacian).
+//! the point tells its Delaunay neighbors; consecutive ones make triangles with it, its star. All of them together
+//! are triangles that form no manifold, and have a [tufted Laplacian](super::tufted_laplacian). It is divided by how
+//! often they cover the surface: three times where each triangle is found from all its corners, twice on a square
+//! lattice, where each corner of a square finds another triangle.
+//!
+//! ```text
+//! m(i) = Σ angles at i of all triangles / Σ angles at i of the star of i
+//! M(i) ← M(i)/m(i)      W(i, j) ← W(i, j) (1/m(i) + 1/m(j))/2
+//! ```
 //!
 //! - Input: points on or near a surface.
 //! - Cost: O(n k²) at worst for n points of k neighbors, in parallel; then the flips.
 //! - Guarantees: weights not negative but for rounding, L·1 = 0. Masses sum to about the area.
 //! - Reference: Sharp and Crane, "A Laplacian for nonmanifold triangle meshes", SGP 2020, section 5.7.
-//! - Departs from it: of the copies of a triangle none is glued to another, which would make them
-//!   pockets apart from the surface, but to the triangles opposite; the Delaunay neighbors come from clipping a Voronoi cell, which needs no
-//!   triangulation of the neighborhood.
+//! - Departs from it: there each triangle counts a third, which is too little where corners disagree (on a square
+//!   lattice by a third). Of the copies of a triangle none is glued to another, which would make them pockets apart
+//!   from the surface, but to the triangles opposite. The Delaunay neighbors come from clipping a Voronoi cell, which
+//!   needs no triangulation of the neighborhood.
 
 use dgp_mesh::{
     DMat3, DVec2, DVec3, Progress, VertexId, VertexMap, linear::symmetric_eigen, parallel,
@@ -22,7 +28,9 @@ use super::{
     IntrinsicLaplacian, IntrinsicOptions,
     tufted::{Gluing, Soup, of_triangles},
 };
-use crate::{Error, nearest::Nearest, unit::unit_of};
+use dgp_sparse::SparseMatrix;
+
+use crate::{Error, laplacian::laplacian_report, nearest::Nearest, unit::unit_of};
 
 /// How [`point_cloud_laplacian`] finds triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,11 +68,58 @@ pub fn point_cloud_laplacian(
         star(&scaled, v.index(), &tree.neighbors(v.index(), options.neighbors))
     });
     progress.report(0.4)?;
+    let shares: Vec<f64> = layers(&scaled, stars.values()).iter().map(|m| 1.0 / m).collect();
     let triangles: Vec<[u32; 3]> = stars.into_values().into_iter().flatten().collect();
-    // Each triangle is expected to be found from its three corners.
-    let (share, part) = (1.0 / 3.0, progress.part(0.5, 1.0));
     let soup = Soup { positions: points.values(), triangles: &triangles };
-    of_triangles(&soup, Gluing::Across, share, options.intrinsic, part)
+    let part = progress.part(0.5, 1.0);
+    let mut found = of_triangles(&soup, Gluing::Across, 1.0, options.intrinsic, part)?;
+    share(&mut found.laplacian, &shares);
+    found.masses.iter_mut().for_each(|(v, mass)| *mass *= shares[v.index()]);
+    found.report.least_weight = laplacian_report(&found.laplacian).least_weight;
+    Ok(found)
+}
+
+/// How often the triangles of all stars cover the angle around each point that its own star covers once.
+fn layers(points: &[DVec3], stars: &[Vec<[u32; 3]>]) -> Vec<f64> {
+    let (mut own, mut all) = (vec![0.0; points.len()], vec![0.0; points.len()]);
+    for (center, star) in stars.iter().enumerate() {
+        for triangle in star {
+            for k in 0..3 {
+                let [p, q, r] = [k, k + 1, k + 2].map(|i| points[triangle[i % 3] as usize]);
+                let (u, v) = (q - p, r - p);
+                let angle = u.cross(v).length().atan2(u.dot(v));
+                let corner = triangle[k] as usize;
+                all[corner] += angle;
+                if corner == center {
+                    own[corner] += angle;
+                }
+            }
+        }
+    }
+    // A point without a star has but the triangles of others, found by some of their corners.
+    let ratio = |(all, own): (f64, f64)| if own > 0.0 { all / own } else { 2.0 };
+    all.into_iter().zip(own).map(ratio).collect()
+}
+
+/// Multiplies weights by the mean of the factors of their ends.
+fn share(laplacian: &mut SparseMatrix, factors: &[f64]) {
+    for j in 0..laplacian.columns() {
+        let start = laplacian.starts()[j] as usize;
+        let rows = laplacian.column(j).0.to_vec();
+        let values = &mut laplacian.values_mut()[start..start + rows.len()];
+        let (mut diagonal, mut sum) = (None, 0.0);
+        for (k, &i) in rows.iter().enumerate() {
+            if i as usize == j {
+                diagonal = Some(k);
+            } else {
+                values[k] *= 0.5 * (factors[i as usize] + factors[j]);
+                sum -= values[k];
+            }
+        }
+        if let Some(k) = diagonal {
+            values[k] = sum;
+        }
+    }
 }
 
 fn not_finite(points: &VertexMap<DVec3>) -> Error {
@@ -107,6 +162,8 @@ fn outer(x: DVec3) -> DMat3 {
 /// The sites whose bisectors bound the Voronoi cell of the origin, counterclockwise; `None` for where it is
 /// open.
 fn voronoi_neighbors(sites: &[DVec2]) -> Vec<Option<usize>> {
+    // A bisector that does but touch the cell, as those of the diagonals of a square lattice, is no side of it.
+    const TOUCH: f64 = 1e-9;
     // Cells that reach farther than this many times the farthest neighbor count as open.
     const OPEN: f64 = 16.0;
     let reach = sites.iter().fold(0.0_f64, |reach, p| reach.max(p.length()));
@@ -125,7 +182,11 @@ fn voronoi_neighbors(sites: &[DVec2]) -> Vec<Option<usize>> {
             continue;
         }
         // Beyond the bisector.
-        let height = |p: DVec2| p.dot(site) - 0.5 * site.length_squared();
+        let square = site.length_squared();
+        let height = |p: DVec2| p.dot(site) - 0.5 * square;
+        if cell.iter().all(|&(p, _)| height(p) <= TOUCH * square) {
+            continue;
+        }
         clipped.clear();
         for (k, &(p, side)) in cell.iter().enumerate() {
             let (q, _) = cell[(k + 1) % cell.len()];

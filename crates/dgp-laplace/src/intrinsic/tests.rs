@@ -1,17 +1,14 @@
 //! Intrinsic triangulations: lengths alone, flips, covers, clouds.
 
 use dgp_mesh::{
-    DMat3, DVec3, FaceList, IndexedFaceSet, Mesh, Progress, VertexMap,
+    DMat3, DVec3, FaceList, IndexedFaceSet, Mesh, Progress,
     measure::{area, edge_lengths},
-    shapes::{self, Random},
+    shapes,
 };
 use dgp_sparse::SparseMatrix;
 
 use super::*;
-use crate::{
-    flow::HeatFlow,
-    laplacian::{cotangent_laplacian, laplacian_report, vertex_masses},
-};
+use crate::laplacian::{cotangent_laplacian, laplacian_report, vertex_masses};
 
 fn delaunay(mesh: &Mesh) -> IntrinsicLaplacian {
     intrinsic_delaunay(mesh, &IntrinsicOptions::default(), Progress::NONE).unwrap()
@@ -25,8 +22,11 @@ fn largest(matrix: &SparseMatrix) -> f64 {
     matrix.values().iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
+/// The largest difference of entries, in units of what rounding of lengths explains: it moves a cotangent c by
+/// some ε (1 + c²), and a chain of flips rounds again and again.
 fn difference(a: &SparseMatrix, b: &SparseMatrix) -> f64 {
-    largest(&SparseMatrix::combine(1.0, a, -1.0, b).unwrap()) / largest(a).max(f64::MIN_POSITIVE)
+    let change = largest(&SparseMatrix::combine(1.0, a, -1.0, b).unwrap());
+    change / (64.0 * f64::EPSILON * (1.0 + largest(a).powi(2)))
 }
 
 /// Irregular meshes, with many edges that want to be flipped.
@@ -98,7 +98,7 @@ fn where_nothing_wants_to_be_flipped_it_is_the_cotangent_laplacian() {
     ] {
         let found = delaunay(&mesh);
         assert_eq!((found.report.flips, found.report.added_length), (0, 0.0));
-        assert!(difference(&cotangent_laplacian(&mesh).unwrap(), &found.laplacian) < 1e-12);
+        assert!(difference(&cotangent_laplacian(&mesh).unwrap(), &found.laplacian) < 1.0);
         let masses = vertex_masses(&mesh);
         assert!(mesh.vertices().all(|v| (masses[v] - found.masses[v]).abs() < 1e-14));
     }
@@ -112,7 +112,7 @@ fn lengths_alone_matter() {
         let mut moved = mesh.clone();
         moved.set_positions(mesh.positions().map(|&p| turn * p + DVec3::new(3.0, -1.0, 2.0)));
         let (a, b) = (delaunay(&mesh), delaunay(&moved));
-        assert!(difference(&a.laplacian, &b.laplacian) < 1e-6, "{name}");
+        assert!(difference(&a.laplacian, &b.laplacian) < 1.0, "{name}");
         let mut by_length =
             IntrinsicTriangulation::from_lengths(&mesh, &edge_lengths(&mesh)).unwrap();
         let mut by_mesh = IntrinsicTriangulation::of_mesh(&mesh).unwrap();
@@ -128,7 +128,7 @@ fn lengths_alone_matter() {
     let rolled = delaunay(&tube);
     let lengths = edge_lengths(&tube);
     let flat = IntrinsicTriangulation::from_lengths(&tube, &lengths).unwrap();
-    assert!(difference(&rolled.laplacian, &flat.laplacian().unwrap()) < 1e-12);
+    assert!(difference(&rolled.laplacian, &flat.laplacian().unwrap()) < 1.0);
 }
 
 #[test]
@@ -157,10 +157,12 @@ fn the_cover_of_a_closed_mesh_is_its_intrinsic_delaunay_laplacian() {
         assert!(report.row_sum_error < 1e-13 && report.asymmetry == 0.0, "{name}");
         assert!(a.report.least_weight.is_none_or(|w| w > -1e-9), "{name}");
         let total: f64 = a.masses.values().iter().sum();
-        assert!((total - area(&mesh)).abs() <= 1e-4 * total, "{name}");
+        // No triangle is so flat that edges had to grow.
+        assert_eq!(a.report.added_length, 0.0, "{name}");
+        assert!((total - area(&mesh)).abs() <= 1e-12 * total, "{name}");
         if mesh.vertices().all(|v| !mesh.is_boundary_vertex(v)) {
             let b = delaunay(&mesh);
-            assert!(difference(&a.laplacian, &b.laplacian) < 1e-7, "{name}");
+            assert!(difference(&a.laplacian, &b.laplacian) < 1.0, "{name}");
         }
     }
 }
@@ -283,91 +285,4 @@ fn lengths_of_no_triangle_are_refused() {
         lengths.values_mut()[0] = wrong;
         assert!(IntrinsicTriangulation::from_lengths(&mesh, &lengths).is_err(), "{wrong}");
     }
-}
-
-fn cloud(points: &VertexMap<DVec3>) -> IntrinsicLaplacian {
-    point_cloud_laplacian(points, &PointCloudOptions::default(), Progress::NONE).unwrap()
-}
-
-/// Points spread at random over the sphere, no two of them very near each other.
-fn random_sphere(n: usize) -> VertexMap<DVec3> {
-    let mut random = Random::new(11);
-    let mut points: Vec<DVec3> = Vec::new();
-    let least = 1.2 / (n as f64).sqrt();
-    while points.len() < n {
-        let p = DVec3::new(random.uniform(), random.uniform(), random.uniform()) * 2.0 - 1.0;
-        let Some(p) = p.try_normalize().filter(|_| p.length() < 1.0) else { continue };
-        if points.iter().all(|q| q.distance(p) > least) {
-            points.push(p);
-        }
-    }
-    points.into()
-}
-
-#[test]
-fn a_cloud_of_a_sphere_has_the_operator_of_the_sphere() {
-    let regular = shapes::icosphere(3).unwrap().positions().clone();
-    let mut errors = Vec::new();
-    for points in [random_sphere(500), random_sphere(2000), regular] {
-        let found = cloud(&points);
-        let report = laplacian_report(&found.laplacian);
-        assert!(report.row_sum_error < 1e-13 && found.report.least_weight.unwrap() > -1e-10);
-        let total: f64 = found.masses.values().iter().sum();
-        let area_error = (total / (4.0 * std::f64::consts::PI) - 1.0).abs();
-        // (M + L) u = M f for f = 7x² − 2 has the solution x².
-        let x2: Vec<f64> = points.values().iter().map(|p| p.x * p.x).collect();
-        let f: Vec<f64> = x2.iter().map(|x| 7.0 * x - 2.0).collect();
-        let flow =
-            HeatFlow::new(&found.laplacian, found.masses.values(), 1.0, Progress::NONE).unwrap();
-        let u = flow.step(&f).unwrap();
-        let square: f64 = u
-            .iter()
-            .zip(&x2)
-            .zip(found.masses.values())
-            .map(|((u, x), m)| m * (u - x).powi(2))
-            .sum();
-        errors.push((area_error, (square / total).sqrt()));
-    }
-    assert!(errors[1].0 < 0.01 && errors[1].1 < 0.004, "{errors:?}");
-    assert!(errors[1].1 < 0.5 * errors[0].1, "{errors:?}");
-    assert!(errors[2].0 < 0.02 && errors[2].1 < 0.005, "{errors:?}");
-}
-
-#[test]
-fn a_flat_cloud_has_the_delaunay_triangles_of_the_plane() {
-    // In the plane intrinsic Delaunay is Delaunay; the cloud finds it but at the rim.
-    let disk = shapes::disk(8).unwrap();
-    let found = cloud(disk.positions());
-    let exact = delaunay(&disk);
-    for v in disk.vertices().filter(|&v| disk.position(v).length() < 0.8) {
-        for j in 0..disk.vertex_count() {
-            let (a, b) = (found.laplacian.get(v.index(), j), exact.laplacian.get(v.index(), j));
-            assert!((a - b).abs() < 1e-9, "{v} {j}: {a} {b}");
-        }
-    }
-}
-
-#[test]
-fn strange_clouds_have_finite_laplacians() {
-    let line: VertexMap<DVec3> =
-        (0..50).map(|i| f64::from(i) * DVec3::X).collect::<Vec<_>>().into();
-    let same: VertexMap<DVec3> = vec![DVec3::ONE; 40].into();
-    let lattice: VertexMap<DVec3> = (0..64)
-        .map(|i| DVec3::new(f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16)))
-        .collect::<Vec<_>>()
-        .into();
-    let twice: VertexMap<DVec3> =
-        shapes::icosphere(1).unwrap().positions().values().repeat(2).into();
-    for points in [VertexMap::new(), vec![DVec3::ZERO].into(), line, same, lattice, twice] {
-        let found = cloud(&points);
-        assert_eq!(found.laplacian.rows(), points.len());
-        assert!(found.laplacian.values().iter().all(|x| x.is_finite()));
-        assert!(found.masses.values().iter().all(|x| *x >= 0.0 && x.is_finite()));
-    }
-    let options = PointCloudOptions { neighbors: 2, ..PointCloudOptions::default() };
-    let refused = point_cloud_laplacian(&vec![DVec3::ZERO].into(), &options, Progress::NONE);
-    assert!(matches!(refused, Err(Error::InvalidOption { name: "neighbors", .. })));
-    let bad: VertexMap<DVec3> = vec![DVec3::ZERO, DVec3::INFINITY].into();
-    let refused = point_cloud_laplacian(&bad, &PointCloudOptions::default(), Progress::NONE);
-    assert!(matches!(refused, Err(Error::NotFinite { vertex }) if vertex.index() == 1));
 }

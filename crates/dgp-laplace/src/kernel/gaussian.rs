@@ -16,7 +16,7 @@
 use dgp_mesh::{DVec3, VertexId, VertexMap, parallel};
 use dgp_sparse::SparseMatrix;
 
-use crate::{Error, nearest::Nearest};
+use crate::{Error, nearest::Nearest, unit::unit_of};
 
 /// Which points are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -72,6 +72,21 @@ pub fn gaussian_laplacian(
     Ok(SparseMatrix::from_edges(n, &edges)?)
 }
 
+/// How far each point is from the nearest of the others: what to choose t by. Infinite where there is no other.
+///
+/// Errors: [`Error::NotFinite`] names a point.
+pub fn nearest_distances(points: &VertexMap<DVec3>) -> Result<VertexMap<f64>, Error> {
+    let unit = unit_of(points.values());
+    let scaled: Vec<DVec3> = points.values().iter().map(|&p| p * unit).collect();
+    let tree = Nearest::new(&scaled)?;
+    Ok(parallel::map(points.len(), |v: VertexId| {
+        let nearest = tree.neighbors(v.index(), 1);
+        nearest
+            .first()
+            .map_or(f64::INFINITY, |&j| scaled[v.index()].distance(scaled[j as usize]) / unit)
+    }))
+}
+
 /// For each point the larger numbers of those that it names or that name it, in order.
 fn symmetric_pairs(near: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let mut pairs: Vec<Vec<u32>> = vec![Vec::new(); near.len()];
@@ -90,10 +105,13 @@ fn symmetric_pairs(near: &[Vec<u32>]) -> Vec<Vec<u32>> {
 
 #[cfg(test)]
 mod tests {
-    use dgp_mesh::shapes;
+    use std::f64::consts::{PI, TAU};
+
+    use dgp_mesh::{Progress, shapes};
+    use dgp_sparse::EigenOptions;
 
     use super::*;
-    use crate::laplacian::laplacian_report;
+    use crate::{laplacian::laplacian_report, spectral::Eigenbasis};
 
     #[test]
     fn weights_are_gaussians_of_the_distance() {
@@ -119,26 +137,63 @@ mod tests {
         );
     }
 
-    /// x² + … on a sphere: the coordinates are eigenfunctions with λ = 2.
+    /// Points of equal areas on the unit sphere: a spiral by the golden section.
+    fn spiral(n: usize) -> VertexMap<DVec3> {
+        let turn = TAU * 2.0 / (1.0 + 5.0_f64.sqrt());
+        let point = |i: usize| {
+            let z = 1.0 - (2 * i + 1) as f64 / n as f64;
+            let (sin, cos) = (turn * i as f64).sin_cos();
+            DVec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
+        };
+        (0..n).map(point).collect::<Vec<_>>().into()
+    }
+
+    /// On the unit sphere the integral that the sum stands for has the eigenvalues 8t² ∫ (1 − Pₗ(1 − s)) e^(−2ts) ds
+    /// over 0 < s < 2, with Legendre's polynomials: 2 and 6 − 3/t for l = 1 and 2, but for e^(−4t).
     #[test]
-    fn on_a_sphere_it_tends_to_the_operator() {
-        let errors: Vec<f64> = [3, 4]
-            .iter()
-            .map(|&level| {
-                let mesh = shapes::icosphere(level).unwrap();
-                let n = mesh.vertex_count() as f64;
-                let t = 0.15 * n.sqrt();
-                let l = gaussian_laplacian(mesh.positions(), t, Neighbors::All).unwrap();
-                let factor = 4.0 * t * t / std::f64::consts::PI * (4.0 * std::f64::consts::PI / n);
-                let z: Vec<f64> = mesh.positions().values().iter().map(|p| p.z).collect();
-                let lz = l.product(&z);
-                // Rayleigh's quotient.
-                let quotient = factor * z.iter().zip(&lz).map(|(a, b)| a * b).sum::<f64>()
-                    / z.iter().map(|a| a * a).sum::<f64>();
-                (quotient - 2.0).abs()
-            })
-            .collect();
-        assert!(errors.iter().all(|error| *error < 2e-3), "of 2: {errors:?}");
+    fn the_spectrum_of_a_sphere_is_that_of_the_kernel_and_tends_to_that_of_the_operator() {
+        let spectrum = |n: usize, t: f64| -> Vec<f64> {
+            let l = gaussian_laplacian(&spiral(n), t, Neighbors::All).unwrap();
+            let ones = VertexMap::filled(n, 1.0);
+            let options = EigenOptions::default();
+            let basis = Eigenbasis::new(&l, &ones, 9, &options, Progress::NONE).unwrap();
+            let factor = 4.0 * t * t / PI * (4.0 * PI / n as f64);
+            basis.values().iter().map(|value| factor * value).collect()
+        };
+        let mut bias = Vec::new();
+        for t in [4.0, 8.0, 16.0] {
+            // e^(−4t) (1 + 4t) is below 2e-6.
+            let exact = |i: usize| if i < 4 { 2.0 } else { 6.0 - 3.0 / t };
+            let off = |values: &[f64]| {
+                let errors = values.iter().enumerate().skip(1);
+                errors.map(|(i, value)| (value / exact(i) - 1.0).abs()).fold(0.0, f64::max)
+            };
+            let (few, many) = (spectrum(400, t), spectrum(1600, t));
+            // The sum tends to the integral, with order 1 in the number of points or better.
+            let errors = [off(&few), off(&many)];
+            assert!(errors[1] < errors[0] / 4.0, "{t}: {errors:?}");
+            bias.push(6.0 - many[4..].iter().sum::<f64>() / 5.0);
+        }
+        // The integral tends to the operator with order 1 in 1/t.
+        let orders = [bias[0] / bias[1], bias[1] / bias[2]].map(f64::log2);
+        assert!(orders.iter().all(|order| (order - 1.0).abs() < 0.05), "{orders:?} {bias:?}");
+    }
+
+    #[test]
+    fn distances_to_the_nearest_are_those_of_all_pairs() {
+        let points = spiral(60);
+        let found = nearest_distances(&points).unwrap();
+        for (v, p) in points.iter() {
+            let others = points.iter().filter(|(w, _)| *w != v);
+            let least = others.map(|(_, q)| q.distance(*p)).fold(f64::INFINITY, f64::min);
+            assert!((found[v] - least).abs() < 1e-15, "{v}");
+        }
+        let alone: VertexMap<DVec3> = vec![DVec3::ONE].into();
+        assert_eq!(nearest_distances(&alone).unwrap().values(), [f64::INFINITY]);
+        let huge: VertexMap<DVec3> = vec![DVec3::ZERO, f64::MAX * DVec3::X].into();
+        assert_eq!(nearest_distances(&huge).unwrap().values(), [f64::MAX; 2]);
+        let bad: VertexMap<DVec3> = vec![DVec3::ZERO, DVec3::NAN].into();
+        assert!(matches!(nearest_distances(&bad), Err(Error::NotFinite { .. })));
     }
 
     #[test]

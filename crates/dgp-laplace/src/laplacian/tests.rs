@@ -10,7 +10,7 @@ use dgp_mesh::{
 use dgp_sparse::SparseMatrix;
 
 use super::*;
-use crate::{Error, flow::HeatFlow, intrinsic::IntrinsicTriangulation};
+use crate::{Error, flow::HeatFlow, test_shapes::flat_torus};
 
 fn mesh(positions: &[DVec3], faces: &[[usize; 3]]) -> Mesh {
     let faces = FaceList::from_indices(faces);
@@ -278,14 +278,8 @@ fn bad_meshes_are_named_or_finite() {
 #[test]
 fn waves_on_a_flat_torus_are_eigenvectors() {
     let n = 16;
-    let torus = shapes::torus(2.0, 1.0, n, n).unwrap();
     let step = 1.0 / n as f64;
-    let lengths = torus.map_edges(|e| {
-        let [a, b] = torus.edge_vertices(e).map(|v| [v.index() % n, v.index() / n]);
-        let is_diagonal = a[0] != b[0] && a[1] != b[1];
-        if is_diagonal { step * 2.0_f64.sqrt() } else { step }
-    });
-    let flat = IntrinsicTriangulation::from_lengths(&torus, &lengths).unwrap();
+    let flat = flat_torus(n);
     let (l, masses) = (flat.laplacian().unwrap(), flat.masses());
     assert!(masses.values().iter().all(|m| (m - step * step).abs() < 1e-15));
     for (a, b) in [(0, 0), (1, 0), (3, 2), (8, 8), (5, 7)] {

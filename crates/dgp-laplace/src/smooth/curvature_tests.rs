@@ -18,7 +18,7 @@ fn methods(boundary: Boundary, volume: Volume) -> Vec<(&'static str, Method)> {
     let solved = ImplicitOptions { boundary, volume, iterations: 2, ..ImplicitOptions::default() };
     let even = ImplicitOptions { weight: ImplicitWeight::Uniform, ..solved };
     let normals = BilateralOptions { boundary, volume, ..BilateralOptions::default() };
-    let scheme = BilateralScheme::Global { fidelity: 0.05 };
+    let scheme = BilateralScheme::Global { fidelity: 0.01 };
     let global = BilateralOptions { scheme, neighborhood: FaceNeighborhood::Edges, ..normals };
     vec![
         ("cotangent", Box::new(move |m, f, p| cotangent(m, f, &plain, p))),
@@ -75,25 +75,28 @@ fn a_plane_stays_vertex_by_vertex_with_cotangents_and_stays_flat_with_all() {
     }
 }
 
-fn radius_and_noise(mesh: &Mesh) -> (f64, f64) {
-    let radii = mesh.positions().map(|p| p.length());
-    let count = radii.len() as f64;
-    let radius = radii.values().iter().sum::<f64>() / count;
-    let square = radii.values().iter().map(|r| (r - radius).powi(2)).sum::<f64>();
-    (radius, (square / count).sqrt())
+/// The standard deviation of how far the vertices of two spheres differ in their distance from the origin.
+fn radial_difference(mesh: &Mesh, other: &Mesh) -> f64 {
+    let off = |v| mesh.position(v).length() - other.position(v).length();
+    let count = mesh.vertex_count() as f64;
+    let mean = mesh.vertices().map(off).sum::<f64>() / count;
+    (mesh.vertices().map(|v| (off(v) - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 #[test]
 fn noise_on_a_sphere_falls_and_the_volume_is_kept_on_request() {
-    let noisy = shapes::with_noise(shapes::icosphere(4).unwrap(), 0.15, 7).unwrap();
-    let (_, before) = radius_and_noise(&noisy);
+    // Noise of normals well below σs, so that none of it counts as an edge.
+    let sphere = shapes::icosphere(4).unwrap();
+    let noisy = shapes::with_noise(sphere.clone(), 0.05, 7).unwrap();
+    let before = radial_difference(&noisy, &sphere);
     for (name, method) in methods(Boundary::Fixed, Volume::Keep) {
-        let mut mesh = noisy.clone();
+        let [mut mesh, mut clean] = [noisy.clone(), sphere.clone()];
         let report = method(&mut mesh, &VertexSet::new(), Progress::NONE).unwrap();
-        let (_, after) = radius_and_noise(&mesh);
-        // The global scheme stays near the given normals.
-        let factor = if name == "bilateral global" { 1.5 } else { 2.5 };
-        assert!(after < before / factor, "{name}: {before} → {after}");
+        let _ = method(&mut clean, &VertexSet::new(), Progress::NONE).unwrap();
+        // What is left of the noise; what becomes of the sphere itself is not noise.
+        let after = radial_difference(&mesh, &clean);
+        // The mean over a ring of seven leaves 1/√7 of white noise, and all of them average over more.
+        assert!(after < before / 7.0_f64.sqrt(), "{name}: {before} → {after}");
         let (start, end) = (report.volume_before.unwrap(), report.volume_after.unwrap());
         assert!((end / start - 1.0).abs() < 1e-12, "{name}");
         assert!((end / measure::volume(&mesh) - 1.0).abs() < 1e-12, "{name}");
@@ -138,7 +141,8 @@ fn normal_error(mesh: &Mesh, clean: &Mesh) -> f64 {
 #[test]
 fn bilateral_filtering_keeps_the_edges_of_a_cube_and_the_others_do_not() {
     let clean = shapes::cuboid(DVec3::splat(2.0), [16, 16, 16]).unwrap();
-    let noisy = shapes::with_noise(clean.clone(), 0.2, 3).unwrap();
+    // 11° on average, below σs; at twice that noise looks like edges.
+    let noisy = shapes::with_noise(clean.clone(), 0.1, 3).unwrap();
     let before = normal_error(&noisy, &clean);
     let run = |method: &Method| {
         let mut mesh = noisy.clone();
@@ -148,10 +152,14 @@ fn bilateral_filtering_keeps_the_edges_of_a_cube_and_the_others_do_not() {
     let errors: Vec<(&str, f64)> =
         plain_methods().iter().map(|(name, method)| (*name, run(method))).collect();
     let of = |name: &str| errors.iter().find(|error| error.0 == name).unwrap().1;
-    assert!(of("bilateral") < 0.2 * before, "{before}: {errors:?}");
-    assert!(of("bilateral global") < 0.7 * before, "{before}: {errors:?}");
-    assert!(of("bilateral") < 0.6 * of("cotangent"), "{errors:?}");
-    assert!(of("bilateral") < 0.6 * of("implicit"), "{errors:?}");
+    // Of faint noise the global scheme leaves a tenth (as predicted beside it); here a part passes for edges.
+    assert!(of("bilateral global") < 0.25 * before, "{before}: {errors:?}");
+    assert!(of("bilateral") < of("bilateral global"), "{errors:?}");
+    // Methods that know no edges turn the normals of the faces there: a rounded edge of two faces of 1/16 of a side
+    // at 90° alone is 12 edges · 32 of 3072 faces by 22° or more.
+    let rounded = 12.0 * 32.0 / 3072.0 * 22.5_f64.to_radians();
+    assert!(of("cotangent") > rounded && of("implicit") > rounded, "{errors:?}");
+    assert!(of("bilateral") < 0.5 * rounded, "{rounded} {errors:?}");
 }
 
 #[test]

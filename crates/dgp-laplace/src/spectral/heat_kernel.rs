@@ -36,6 +36,27 @@ pub fn heat_kernel_diagonal(basis: &Eigenbasis, time: f64) -> Result<VertexMap<f
     Ok(sum.into())
 }
 
+/// `count` times, even in their logarithms, over which the signatures of these functions tell places apart: from
+/// 4 ln 10/λ of the last function, when it has faded to 10⁻⁴, to the same of the first that is not constant.
+/// In length².
+///
+/// Errors: [`Error::InvalidOption`] if `count` is 0, or no function has an eigenvalue above 0.
+pub fn signature_times(basis: &Eigenbasis, count: usize) -> Result<Vec<f64>, Error> {
+    if count == 0 {
+        return Err(Error::option("count", 0.0, "at least 1"));
+    }
+    let waves = &basis.values()[basis.zero_count()..];
+    let (Some(&first), Some(&last)) = (waves.first(), waves.last()) else {
+        let (count, expected) = (basis.len() as f64, "more than the number of parts");
+        return Err(Error::option("functions", count, expected));
+    };
+    let faded = 4.0 * std::f64::consts::LN_10;
+    let (shortest, longest) = ((faded / last).ln(), (faded / first).ln());
+    // One time alone is the middle.
+    let part = |i: usize| if count == 1 { 0.5 } else { i as f64 / (count - 1) as f64 };
+    Ok((0..count).map(|i| (shortest + part(i) * (longest - shortest)).exp()).collect())
+}
+
 /// e^(−λ t) for each eigenvalue.
 fn decay(basis: &Eigenbasis, time: f64) -> Result<Vec<f64>, Error> {
     if !(time >= 0.0 && time.is_finite()) {

@@ -8,7 +8,7 @@
 //! | which parts belong together | [`partition`] |
 //! | how few numbers describe the shape | [`compress`], [`rate_distortion`] |
 //! | which points correspond | [`functional_map`], [`zoomout`], [`point_map`] |
-//! | how does heat spread | [`heat_kernel`], [`heat_kernel_diagonal`] |
+//! | how does heat spread | [`heat_kernel`], [`heat_kernel_diagonal`], [`signature_times`] |
 
 mod basis;
 mod cluster;
@@ -18,6 +18,8 @@ mod functional_map;
 mod graph;
 mod heat_kernel;
 mod nodal;
+#[cfg(test)]
+mod oracle_tests;
 mod partition;
 #[cfg(test)]
 mod tests;
@@ -29,7 +31,7 @@ pub use fiedler::{Fiedler, fiedler};
 pub use functional_map::{
     FunctionalMap, FunctionalMapOptions, functional_map, map_of_points, point_map,
 };
-pub use heat_kernel::{heat_kernel, heat_kernel_diagonal};
+pub use heat_kernel::{heat_kernel, heat_kernel_diagonal, signature_times};
 pub use nodal::{NodalDomains, nodal_domains};
 pub use partition::{Partition, PartitionMethod, PartitionOptions, partition};
 pub use zoomout::{ZoomOut, ZoomOutOptions, zoomout};

@@ -5,7 +5,7 @@
 //! are sorted by the larger vertex, and side by side they give the two sides of each edge. No hashing; arrays are written in order and read where faces that are
 //! close in the list are close on the surface.
 
-use std::ops::Range;
+use std::{cmp::Ordering, ops::Range};
 
 use crate::{
     Connectivity, CornerId, FaceId, FaceList, HalfedgeId, HalfedgeMap, NotManifold, VertexId,
@@ -20,7 +20,9 @@ pub(crate) fn assemble(
     vertex_count: usize,
     faces: &FaceList,
 ) -> Result<(Connectivity, CornerHalfedges), NotManifold> {
-    check_degrees(faces)?;
+    if faces.uniform_degree() != Some(3) {
+        check_degrees(faces)?;
+    }
     let Edges { to, corner, corner_halfedges, vertex_halfedge, holes } =
         Edges::new(vertex_count, faces)?;
     let mut connectivity = link_faces(faces, corner, &corner_halfedges);
@@ -58,49 +60,67 @@ fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
         .map_or(Ok(()), |face| Err(NotManifold::DegenerateFace { face }))
 }
 
-/// A side of a face in the bucket of its smaller vertex. From the top: 32 bits for the larger vertex,
-/// one for the direction (0 if the side leads from the smaller to the larger), 31 for its corner.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Side(u64);
+/// A side of a face in the bucket of its smaller vertex: its corner, with the direction in the highest
+/// bit (0 if the side leads from the smaller to the larger), and the larger vertex.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Side([u32; 2]);
 
 impl Side {
     #[inline]
     fn new(corner: usize, a: VertexId, b: VertexId) -> Self {
         let (smaller, larger) = (a.index().min(b.index()), a.index().max(b.index()));
-        Side((larger as u64) << 32 | u64::from(a.index() != smaller) << 31 | corner as u64)
+        Side([u32::from(a.index() != smaller) << 31 | corner as u32, larger as u32])
+    }
+
+    /// By the larger vertex, then by direction.
+    #[inline]
+    fn key(self) -> u64 {
+        u64::from(self.0[1]) << 32 | u64::from(self.0[0])
     }
 
     #[inline]
     pub(crate) fn larger(self) -> usize {
-        (self.0 >> 32) as usize
+        self.0[1] as usize
     }
 
     #[inline]
     pub(crate) fn is_forward(self) -> bool {
-        self.0 >> 31 & 1 == 0
+        self.0[0] >> 31 == 0
     }
 
     #[inline]
     pub(crate) fn corner(self) -> usize {
-        self.0 as usize & (FaceList::MAX_CORNERS - 1)
+        self.0[0] as usize & (FaceList::MAX_CORNERS - 1)
+    }
+}
+
+impl Ord for Side {
+    #[inline]
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.key().cmp(&other.key())
+    }
+}
+
+impl PartialOrd for Side {
+    #[inline]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
     }
 }
 
 /// The sides of all faces in sorted buckets by smaller vertex. That of v is `[v]..[v + 1]` of the
 /// second list.
 pub(crate) fn sorted_sides(vertex_count: usize, faces: &FaceList) -> (Vec<Side>, Vec<u32>) {
-    let Buckets { mut sides, starts, .. } = Buckets::new(vertex_count, faces);
+    let buckets = Buckets::new(vertex_count, faces);
+    let (mut sides, starts, _) = buckets.fill(faces);
     sort_buckets(&mut sides, &starts, 0..vertex_count);
     (sides, starts)
 }
 
-/// The sides of all faces by their smaller vertex.
+/// Where the sides of each vertex to larger ones have their place.
 struct Buckets {
-    sides: Vec<Side>,
-    /// The bucket of v is at `[v]..[v + 1]` of the sides.
+    /// The bucket of v is at `[v]..[v + 1]`.
     starts: Vec<u32>,
-    /// Where the forward sides of each bucket end and the others begin.
-    middles: Vec<[u32; 2]>,
 }
 
 impl Buckets {
@@ -110,9 +130,16 @@ impl Buckets {
         for v in 1..starts.len() {
             starts[v] += starts[v - 1];
         }
+        Buckets { starts }
+    }
+
+    /// The sides in their buckets, where these begin, and where the forward sides of each end and the
+    /// others begin.
+    fn fill(self, faces: &FaceList) -> (Vec<Side>, Vec<u32>, Vec<[u32; 2]>) {
+        let Buckets { starts } = self;
         // Each bucket fills from both ends.
         let mut middles: Vec<_> = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
-        let mut sides = vec![0_u64; faces.corners().len()];
+        let mut sides = vec![[0_u32; 2]; faces.corners().len()];
         for_each_side(faces, |corner, a, b| {
             let backward = usize::from(a > b);
             let end = &mut middles[a.min(b).index()][backward];
@@ -121,7 +148,7 @@ impl Buckets {
             sides[place as usize] = Side::new(corner, a, b).0;
         });
         // Zeros come from the system for nothing, sides would be written twice. This stays in place.
-        Buckets { sides: sides.into_iter().map(Side).collect(), starts, middles }
+        (sides.into_iter().map(Side).collect(), starts, middles)
     }
 }
 
@@ -204,32 +231,38 @@ struct Edges {
 
 impl Edges {
     fn new(vertex_count: usize, faces: &FaceList) -> Result<Self, NotManifold> {
-        let Buckets { mut sides, starts, middles } = Buckets::new(vertex_count, faces);
-        // Room for an eighth of the edges on the boundary; a patchwork grows.
-        let room = sides.len() / 2 + sides.len() / 16;
+        let buckets = Buckets::new(vertex_count, faces);
+        let count = faces.corners().len();
+        // The sides come last: what they leave is where the allocator can use it again.
         let mut numbering = Numbering {
-            none: sides.len() as u32,
-            to: Vec::with_capacity(room),
-            corner: Vec::with_capacity(room),
-            corner_halfedges: vec![0; sides.len()],
+            corner_halfedges: vec![0; count],
+            none: count as u32,
+            // Room for an eighth of the edges on the boundary; a patchwork grows.
+            to: Vec::with_capacity(count / 2 + count / 16),
             vertex_halfedge: VertexMap::filled(vertex_count, None),
             holes: Vec::new(),
         };
-        let mut rest = &mut sides[..];
+        let mut bucket = Vec::with_capacity(64);
+        let (mut sides, starts, middles) = buckets.fill(faces);
         for (v, (ends, middle)) in starts.windows(2).zip(&middles).enumerate() {
-            let (bucket, others) = rest.split_at_mut((ends[1] - ends[0]) as usize);
-            rest = others;
+            bucket.clear();
+            bucket.extend_from_slice(&sides[ends[0] as usize..ends[1] as usize]);
             let (forward, backward) = bucket.split_at_mut((middle[0] - ends[0]) as usize);
             sort(forward);
             sort(backward);
             let smaller = VertexId::new(v);
-            if let Err(larger) = numbering.add(smaller, forward, backward) {
+            // There are at least as many sides as edges: what is read makes room for what is written.
+            if let Err(larger) = numbering.add(smaller, forward, backward, &mut sides) {
+                check_degrees(faces)?;
                 bucket.sort_unstable();
                 let first = bucket.partition_point(|side| side.larger() < larger);
                 return Err(obstacle(smaller, &bucket[first..], faces));
             }
         }
-        let Numbering { to, corner, corner_halfedges, vertex_halfedge, holes, .. } = numbering;
+        let Numbering { to, corner_halfedges, vertex_halfedge, holes, .. } = numbering;
+        sides.truncate(to.len());
+        sides.shrink_to_fit();
+        let corner: Vec<[u32; 2]> = sides.into_iter().map(|pair| pair.0).collect();
         let (to, corner) = (to.into_flattened().into(), corner.into_flattened());
         Ok(Edges { to, corner, corner_halfedges, vertex_halfedge, holes })
     }
@@ -239,21 +272,22 @@ impl Edges {
 struct Numbering {
     none: u32,
     to: Vec<[VertexId; 2]>,
-    corner: Vec<[u32; 2]>,
     corner_halfedges: CornerHalfedges,
     vertex_halfedge: VertexMap<Option<HalfedgeId>>,
     holes: Vec<HalfedgeId>,
 }
 
 impl Numbering {
-    /// Numbers the edges of a vertex to larger ones, given their sorted sides. If sides cannot be those
-    /// of one edge, the error is its larger vertex.
+    /// Numbers the edges of a vertex to larger ones, given their sorted sides, and writes the corners of
+    /// edge e to `corners[e]`. If sides cannot be those of one edge, the error is its larger vertex; that is
+    /// the smaller one too where a triangle names a vertex twice.
     #[inline]
     fn add(
         &mut self,
         smaller: VertexId,
         mut forward: &[Side],
         mut backward: &[Side],
+        corners: &mut [Side],
     ) -> Result<(), usize> {
         if forward.is_empty() && backward.is_empty() {
             return Ok(());
@@ -266,7 +300,7 @@ impl Numbering {
                 (Some(side), None) | (None, Some(side)) => side.larger(),
                 (Some(one), Some(other)) => one.larger().min(other.larger()),
             };
-            if previous == Some(larger) {
+            if previous == Some(larger) || larger == smaller.index() {
                 return Err(larger);
             }
             previous = Some(larger);
@@ -274,16 +308,23 @@ impl Numbering {
             let other = other.filter(|side| side.larger() == larger);
             forward = &forward[usize::from(one.is_some())..];
             backward = &backward[usize::from(other.is_some())..];
-            self.push([smaller, VertexId::new(larger)], one.copied(), other.copied());
+            let ends = [smaller, VertexId::new(larger)];
+            let edge = self.to.len();
+            corners[edge] = Side(self.push(ends, one.copied(), other.copied()));
         }
         // The last one; each vertex that has a bucket starts with an edge of its own.
         self.vertex_halfedge[smaller] = Some(HalfedgeId::new(2 * (self.to.len() - 1)));
         Ok(())
     }
 
-    /// Numbers the edge with these sides, of which there is at least one.
+    /// Numbers the edge with these sides, of which there is at least one, and returns their corners.
     #[inline]
-    fn push(&mut self, [smaller, larger]: [VertexId; 2], one: Option<Side>, other: Option<Side>) {
+    fn push(
+        &mut self,
+        [smaller, larger]: [VertexId; 2],
+        one: Option<Side>,
+        other: Option<Side>,
+    ) -> [u32; 2] {
         let halfedge = HalfedgeId::new(2 * self.to.len());
         let mut corner = |h: HalfedgeId, side: Option<Side>| {
             if let Some(side) = side {
@@ -294,10 +335,10 @@ impl Numbering {
             self.none
         };
         let corners = [corner(halfedge, one), corner(halfedge.twin(), other)];
-        self.corner.push(corners);
         self.to.push([larger, smaller]);
         // Holds only if the bucket of the larger vertex, which comes later, is empty.
         self.vertex_halfedge[larger] = Some(halfedge.twin());
+        corners
     }
 }
 
@@ -314,15 +355,14 @@ fn obstacle(smaller: VertexId, bucket: &[Side], faces: &FaceList) -> NotManifold
     }
 }
 
-/// Next, prev and face of the half-edges that have a face; itself, itself and none for the others. And
-/// a half-edge of each face.
+/// Prev and face of the half-edges that have a face; itself and none for the others. And a half-edge of
+/// each face.
 fn link_faces(faces: &FaceList, corner: Vec<u32>, halfedges: &[u32]) -> Connectivity {
     if faces.uniform_degree() == Some(3) {
         return link(
             corner,
             halfedges,
             |c| (c / 3) as usize,
-            |c| if c % 3 == 2 { c - 2 } else { c + 1 },
             |c| if c % 3 == 0 { c + 2 } else { c - 1 },
             || halfedges.iter().step_by(3).map(|&h| HalfedgeId::new(h as usize)).collect(),
         );
@@ -338,11 +378,6 @@ fn link_faces(faces: &FaceList, corner: Vec<u32>, halfedges: &[u32]) -> Connecti
         halfedges,
         |c| face(c).index(),
         |c| {
-            let (f, following) = (face(c), c + 1);
-            let start = start(f);
-            if following as usize == start + faces.degree(f) { start as u32 } else { following }
-        },
-        |c| {
             let f = face(c);
             let start = start(f);
             if c as usize == start { (start + faces.degree(f) - 1) as u32 } else { c - 1 }
@@ -357,34 +392,21 @@ fn link(
     corner: Vec<u32>,
     halfedges: &[u32],
     face: impl Fn(u32) -> usize + Sync,
-    following: impl Fn(u32) -> u32 + Sync,
-    preceding: impl Fn(u32) -> u32 + Sync,
+    preceding: impl Fn(u32) -> u32 + Sync + Send,
     first: impl FnOnce() -> Vec<HalfedgeId>,
 ) -> Connectivity {
     let none = halfedges.len() as u32;
     let halfedge = |c: u32| HalfedgeId::new(halfedges[c as usize] as usize);
-    // Room is made by this thread, whose allocator has what the buckets left.
-    let mut next = Vec::with_capacity(corner.len());
-    let mut faces = Vec::with_capacity(corner.len());
-    parallel::join(
-        || {
-            next.extend(corner.iter().enumerate().map(|(h, &c)| match c {
-                c if c == none => HalfedgeId::new(h),
-                c => halfedge(following(c)),
-            }));
-        },
-        || faces.extend(corner.iter().map(|&c| (c != none).then(|| FaceId::new(face(c))))),
-    );
-    let first = first();
-    // Takes the place of the corners.
-    let prev = corner.into_iter().enumerate().map(|(h, c)| match c {
-        c if c == none => HalfedgeId::new(h),
+    let prev = parallel::map(corner.len(), |h: HalfedgeId| match corner[h.index()] {
+        c if c == none => h,
         c => halfedge(preceding(c)),
     });
-    let prev: Vec<_> = prev.collect();
+    let first = first();
+    // Takes the place of the corners.
+    let faces: Vec<_> =
+        corner.into_iter().map(|c| (c != none).then(|| FaceId::new(face(c)))).collect();
     Connectivity {
-        next: next.into(),
-        prev: prev.into(),
+        prev,
         face: faces.into(),
         face_halfedge: first.into(),
         ..Connectivity::default()
@@ -393,7 +415,7 @@ fn link(
 
 /// Chains the half-edges without a face around each hole, and lets boundary vertices start with them.
 fn link_holes(connectivity: &mut Connectivity, holes: &[HalfedgeId]) -> Result<(), NotManifold> {
-    let Connectivity { next, prev, to, face, vertex_halfedge, .. } = connectivity;
+    let Connectivity { prev, to, face, vertex_halfedge, .. } = connectivity;
     for &h in holes {
         let vertex = to[h.twin()];
         match vertex_halfedge[vertex] {
@@ -407,7 +429,6 @@ fn link_holes(connectivity: &mut Connectivity, holes: &[HalfedgeId]) -> Result<(
     for &h in holes {
         // Faces enter and leave a vertex equally often, so where a hole arrives one also leaves.
         if let Some(following) = vertex_halfedge[to[h]] {
-            next[h] = following;
             prev[following] = h;
         }
     }
@@ -438,9 +459,9 @@ fn check_fans(connectivity: &Connectivity) -> Result<(), NotManifold> {
 /// How many half-edges leave the vertex that `h` leaves, in the fan of `h`.
 #[inline]
 fn orbit_length(connectivity: &Connectivity, h: HalfedgeId) -> usize {
-    let (mut length, mut g) = (1, connectivity.cw(h));
+    let (mut length, mut g) = (1, connectivity.ccw(h));
     while g != h {
-        (length, g) = (length + 1, connectivity.cw(g));
+        (length, g) = (length + 1, connectivity.ccw(g));
     }
     length
 }
@@ -462,10 +483,14 @@ mod tests {
         // Networks sort everything if they sort all lists of zeros and ones.
         for len in 0..8 {
             for bits in 0..1_u64 << len {
-                let mut sides: Vec<Side> = (0..len).map(|i| Side(bits >> i & 1)).collect();
+                let mut sides: Vec<Side> =
+                    (0..len).map(|i| Side([0, (bits >> i & 1) as u32])).collect();
                 sort(&mut sides);
                 assert!(sides.is_sorted(), "{len} {bits:b}");
-                assert_eq!(sides.iter().map(|side| side.0).sum::<u64>(), bits.count_ones().into());
+                assert_eq!(
+                    sides.iter().map(|side| side.larger()).sum::<usize>(),
+                    bits.count_ones() as usize
+                );
             }
         }
     }

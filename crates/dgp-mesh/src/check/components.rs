@@ -3,10 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    Groups,
-    adjacency::Adjacency,
-    depth::{Rectangles, crosses},
-    union::Union,
+    Groups, adjacency::Adjacency, depth::odd_crossings, larger::have_larger, union::Union,
 };
 use crate::{FaceId, FaceMap, VertexId, VertexMap};
 
@@ -122,44 +119,55 @@ impl<'a> Solids<'a> {
 
     /// Which of the `candidates` an odd number of other components surround.
     fn cavities(&self, candidates: &[bool]) -> Vec<bool> {
-        // Only components whose boxes hold the box of a candidate can surround it.
-        let boxes = Rectangles::new(self.boxes.clone());
-        let mut surrounds = vec![false; candidates.len()];
-        let mut inner = vec![false; candidates.len()];
-        for k in (0..candidates.len()).filter(|&k| candidates[k]) {
-            let (min, max) = self.boxes[k];
-            boxes.at(min, |j| {
-                let (other_min, other_max) = self.boxes[j];
-                if j != k && other_min.cmplt(min).all() && other_max.cmpgt(max).all() {
-                    (surrounds[j], inner[k]) = (true, true);
-                }
-            });
-        }
-        if !inner.contains(&true) {
-            return inner;
+        let mut is_cavity = vec![false; candidates.len()];
+        let (inner, surrounds) = self.nesting(candidates);
+        if inner.is_empty() {
+            return is_cavity;
         }
         // Scaled by a power of two, so that the predicates neither overflow nor lose bits.
         let reach = self.boxes.iter().map(|(min, max)| min.abs().max(max.abs()).max_element());
         let scale = 2.0_f64.powi(-(reach.fold(1e-300, f64::max).log2().floor() as i32).max(-1000));
-        let (mut triangles, mut owners) = (Vec::new(), Vec::new());
-        for (j, group) in self.faces.iter().enumerate().filter(|&(j, _)| surrounds[j]) {
+        let scaled: VertexMap<DVec3> =
+            self.positions.values().iter().map(|p| p * scale).collect::<Vec<_>>().into();
+        let triangles_of = |group: &[FaceId]| {
+            let mut triangles = Vec::with_capacity(group.len());
             for &f in group {
-                self.for_each_triangle(f, |triangle| {
-                    triangles.push(triangle.map(|v| self.positions[v] * scale));
-                    owners.push(j);
-                });
+                self.for_each_triangle(f, |triangle| triangles.push(triangle));
             }
+            triangles
+        };
+        let groups: Vec<&[FaceId]> = self.faces.iter().collect();
+        let surrounding = groups.iter().zip(&surrounds).filter(|&(_, &surrounds)| surrounds);
+        let mut triangles: Vec<_> =
+            surrounding.flat_map(|(group, _)| triangles_of(group)).collect();
+        let point = |&k: &usize| scaled[self.adjacency.faces.face(groups[k][0])[0]];
+        let points: Vec<DVec3> = inner.iter().map(point).collect();
+        let odd = odd_crossings(&points, &scaled, &mut triangles);
+        for ((k, point), odd) in inner.into_iter().zip(points).zip(odd) {
+            // Without its own.
+            let mut own = if surrounds[k] { triangles_of(groups[k]) } else { Vec::new() };
+            is_cavity[k] = odd ^ odd_crossings(&[point], &scaled, &mut own)[0];
         }
-        let bounds = |&[a, b, c]: &[DVec3; 3]| (a.min(b).min(c), a.max(b).max(c));
-        let tree = Rectangles::new(triangles.iter().map(bounds).collect());
-        for (k, group) in self.faces.iter().enumerate().filter(|&(k, _)| candidates[k]) {
-            let corner = group.first().and_then(|&f| self.adjacency.faces.face(f).first());
-            let Some(point) = corner.map(|&v| self.positions[v] * scale) else { continue };
-            let mut odd = false;
-            tree.at(point, |t| odd ^= owners[t] != k && crosses(point, triangles[t]));
-            inner[k] &= odd;
-        }
-        inner
+        is_cavity
+    }
+
+    /// The `candidates` whose boxes lie in the box of another component, and which components have
+    /// such a box in theirs: no others can surround a candidate.
+    fn nesting(&self, candidates: &[bool]) -> (Vec<usize>, Vec<bool>) {
+        let reach = |(min, max): &(DVec3, DVec3)| {
+            let (min, max) = (-*min, *max);
+            [min.x, min.y, min.z, max.x, max.y, max.z]
+        };
+        let all: Vec<[f64; 6]> = self.boxes.iter().map(reach).collect();
+        let numbers: Vec<usize> = (0..candidates.len()).filter(|&k| candidates[k]).collect();
+        let asking: Vec<[f64; 6]> = numbers.iter().map(|&k| all[k]).collect();
+        let is_inner = have_larger(&asking, &all);
+        let negated = |reaches: &[[f64; 6]]| -> Vec<[f64; 6]> {
+            reaches.iter().map(|reach| reach.map(|x| -x)).collect()
+        };
+        let surrounds = have_larger(&negated(&all), &negated(&asking));
+        let inner = numbers.into_iter().zip(is_inner).filter(|&(_, is_inner)| is_inner);
+        (inner.map(|(k, _)| k).collect(), surrounds)
     }
 
     fn for_each_triangle(&self, f: FaceId, mut visit: impl FnMut([VertexId; 3])) {

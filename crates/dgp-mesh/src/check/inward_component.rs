@@ -20,10 +20,16 @@ mod tests {
 
     /// The first faces of the inward ones among tetrahedra of these sizes around one point.
     fn inward(tetrahedra: &[(f64, [[usize; 3]; 4])]) -> Vec<usize> {
+        let at_origin = tetrahedra.iter().map(|&(size, list)| (DVec3::ZERO, size, list));
+        inward_at(&at_origin.collect::<Vec<_>>())
+    }
+
+    /// The same around these points.
+    fn inward_at(tetrahedra: &[(DVec3, f64, [[usize; 3]; 4])]) -> Vec<usize> {
         let (mut positions, mut faces) = (Vec::new(), Vec::new());
-        for (k, (size, list)) in tetrahedra.iter().enumerate() {
-            positions
-                .extend([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| (p - 0.2) * *size));
+        for (k, (center, size, list)) in tetrahedra.iter().enumerate() {
+            let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+            positions.extend(corners.map(|p| center + (p - 0.2) * *size));
             faces.extend(list.iter().map(|face| face.map(|v| v + 4 * k)));
         }
         let faces = FaceList::from_indices(&faces);
@@ -44,5 +50,25 @@ mod tests {
         assert_eq!(inward(&[(1e200, INWARD)]), [0]);
         assert_eq!(inward(&[(0.5, INWARD), (1.0, INWARD)]), [4]);
         assert_eq!(inward(&[(1.0, OUTWARD), (0.5, OUTWARD), (0.25, INWARD)]), [8]);
+    }
+    #[test]
+    fn thousands_within_each_other_are_told_apart() {
+        let shell =
+            |k: usize| (4000.0 - k as f64, if k.is_multiple_of(2) { OUTWARD } else { INWARD });
+        let mut shells: Vec<_> = (0..3000).map(shell).collect();
+        assert_eq!(inward(&shells), []);
+        // Without one of them, those within look the wrong way.
+        shells.remove(1501);
+        let turned = (1501..2999).filter(|&k| shells[k].1 == INWARD).map(|k| 4 * k);
+        assert_eq!(inward(&shells), turned.collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn thousands_beside_each_other_are_told_apart() {
+        let bubble = |k: usize| (DVec3::new(k as f64, 0.0, 0.0), 0.5, INWARD);
+        let mut bubbles: Vec<_> = (0..5000).map(bubble).collect();
+        assert_eq!(inward_at(&bubbles), (0..5000).map(|k| 4 * k).collect::<Vec<_>>());
+        bubbles.push((DVec3::splat(-2.0), 1e5, OUTWARD));
+        assert_eq!(inward_at(&bubbles), []);
     }
 }

@@ -16,6 +16,7 @@ mod duplicate_vertex;
 mod elements;
 mod inward_component;
 mod isolated_vertex;
+mod larger;
 mod misoriented_edge;
 mod non_finite_vertex;
 mod non_manifold_edge;

@@ -48,7 +48,6 @@ impl Compaction {
         let connectivity = &mut mesh.connectivity;
         for (new, &old) in edges.iter().enumerate() {
             for (h, g) in EdgeId::new(new).halfedges().into_iter().zip(old.halfedges()) {
-                connectivity.next[h] = halfedge(connectivity.next[g]);
                 connectivity.prev[h] = halfedge(connectivity.prev[g]);
                 connectivity.to[h] = vertex(connectivity.to[g]);
                 connectivity.face[h] = connectivity.face[g].map(|f| self.faces[f].expect(LEFT));
@@ -63,7 +62,6 @@ impl Compaction {
             connectivity.face_halfedge[FaceId::new(new)] =
                 halfedge(connectivity.face_halfedge[old]);
         }
-        connectivity.next.truncate(2 * edges.len());
         connectivity.prev.truncate(2 * edges.len());
         connectivity.to.truncate(2 * edges.len());
         connectivity.face.truncate(2 * edges.len());
@@ -86,8 +84,7 @@ impl Editor<'_> {
     pub(super) fn need_no_removed_names(&self) -> Result<(), Invalid> {
         let mesh = &self.mesh.connectivity;
         for h in self.halfedges() {
-            let is_named = self.has_halfedge(mesh.next(h))
-                && self.has_halfedge(mesh.prev(h))
+            let is_named = self.has_halfedge(mesh.prev(h))
                 && self.has_vertex(mesh.to(h))
                 && mesh.face(h).is_none_or(|f| self.has_face(f));
             if !is_named {

@@ -270,7 +270,6 @@ impl Editor<'_> {
         let connectivity = &mut self.mesh.connectivity;
         let h = HalfedgeId::new(connectivity.halfedge_count());
         for (g, end) in [(h, to), (h.twin(), from)] {
-            connectivity.next.push(g);
             connectivity.prev.push(g);
             connectivity.to.push(end);
             connectivity.face.push(None);
@@ -317,7 +316,6 @@ impl Connectivity {
     /// Lets `g` follow `h`.
     #[inline]
     fn link(&mut self, h: HalfedgeId, g: HalfedgeId) {
-        self.next[h] = g;
         self.prev[g] = h;
     }
 
@@ -326,7 +324,7 @@ impl Connectivity {
         let mut g = h;
         loop {
             self.face[g] = f;
-            g = self.next[g];
+            g = self.prev[g];
             if g == h {
                 return;
             }
@@ -336,6 +334,6 @@ impl Connectivity {
     /// Whether the loop of `h` has three sides.
     #[inline]
     fn is_triangle_loop(&self, h: HalfedgeId) -> bool {
-        self.next(self.next(h)) == self.prev(h)
+        self.prev(self.prev(self.prev(h))) == h
     }
 }

@@ -11,8 +11,7 @@ use glam::DVec3;
 
 use super::compact::gather;
 use crate::{
-    EdgeId, EdgeMap, FaceId, FaceMap, HalfedgeId, HalfedgeMap, Id, IdMap, Mesh, VertexId,
-    VertexMap, parallel,
+    EdgeId, EdgeMap, FaceId, FaceMap, HalfedgeId, Id, IdMap, Mesh, VertexId, VertexMap, parallel,
 };
 
 /// Where the elements of a mesh went when it was reordered: the new id for each old one.
@@ -142,11 +141,7 @@ fn apply(
     let halfedges = mesh.halfedge_count();
     let old = std::mem::take(&mut mesh.connectivity);
     let connectivity = &mut mesh.connectivity;
-    let by_halfedge = |links: &HalfedgeMap<HalfedgeId>| {
-        parallel::map(halfedges, |h| new.halfedge(links[old_halfedge(h)]))
-    };
-    connectivity.next = by_halfedge(&old.next);
-    connectivity.prev = by_halfedge(&old.prev);
+    connectivity.prev = parallel::map(halfedges, |h| new.halfedge(old.prev[old_halfedge(h)]));
     connectivity.to = parallel::map(halfedges, |h| new.vertices[old.to[old_halfedge(h)]]);
     connectivity.face =
         parallel::map(halfedges, |h| old.face[old_halfedge(h)].map(|f| new.faces[f]));

@@ -11,8 +11,8 @@ impl Mesh {
         let corner = &self.attributes.corner;
         if !corner.is_empty() {
             // The corner of a half-edge is where it starts, which is now where its next started.
-            let next = &self.connectivity.next;
-            self.attributes.corner = corner.gather(corner.len(), |h: HalfedgeId| Some(next[h]));
+            let next = |h| self.connectivity.next(h);
+            self.attributes.corner = corner.gather(corner.len(), |h: HalfedgeId| Some(next(h)));
         }
         turn_normals(&mut self.attributes.vertex);
         turn_normals(&mut self.attributes.corner);
@@ -24,6 +24,10 @@ impl Mesh {
 impl Connectivity {
     /// Turns every face over, keeping the first corner of each.
     fn reverse(&mut self) {
+        let mut next = self.prev.clone();
+        for h in self.halfedges() {
+            next[self.prev[h]] = h;
+        }
         // What arrived at an element before leaves it now.
         for start in self.vertex_halfedge.values_mut().iter_mut().flatten() {
             *start = self.prev[*start];
@@ -31,7 +35,7 @@ impl Connectivity {
         for start in self.face_halfedge.values_mut() {
             *start = self.prev[*start];
         }
-        std::mem::swap(&mut self.next, &mut self.prev);
+        self.prev = next;
         for ends in self.to.values_mut().as_chunks_mut::<2>().0 {
             ends.swap(0, 1);
         }

@@ -10,8 +10,12 @@
 //! - Guarantees: no path is shorter in the arithmetic of f64; of equal ones always the same is found.
 //! - Reference: Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1,
 //!   1959.
+//! - Departs from it: a vertex enters the queue again whenever its distance falls, and what became of
+//!   older entries is seen when they come up. On meshes a quarter more entries cost less than knowing
+//!   where in the queue each vertex is.
 
-use super::IndexedHeap;
+use std::{cmp::Reverse, collections::BinaryHeap};
+
 use crate::{Connectivity, EdgeMap, Error, HalfedgeId, Progress, VertexId, VertexMap, VertexSet};
 
 /// When [`dijkstra`] may stop.
@@ -76,50 +80,122 @@ pub fn dijkstra(
 ) -> Result<ShortestPaths, Error> {
     validate(mesh, lengths)?;
     let count = mesh.vertex_count();
-    let mut found = ShortestPaths {
-        distance: VertexMap::filled(count, f64::INFINITY),
-        arrival: VertexMap::filled(count, None),
-        order: Vec::new(),
-    };
-    let mut queue = IndexedHeap::with_capacity(count);
+    let mut reached = VertexMap::filled(count, Reached::NEVER);
+    let mut order = Vec::new();
+    let mut queue = BinaryHeap::new();
     for &source in sources {
-        found.distance[source] = 0.0;
-        queue.set(source, 0.0);
+        if reached[source].distance > 0.0 {
+            reached[source].distance = 0.0;
+            queue.push(Reverse(Entry::new(0.0, source)));
+        }
     }
     let mut missing = match until {
         Until::Reached(targets) => targets.len(),
         _ => usize::MAX,
     };
-    while let Some((v, distance)) = queue.first() {
+    let mut ring = Vec::new();
+    while let Some(&Reverse(nearest)) = queue.peek() {
+        let (distance, v) = (nearest.distance(), nearest.vertex());
+        if distance > reached[v].distance {
+            queue.pop();
+            continue;
+        }
         if missing == 0 || matches!(until, Until::Distance(limit) if distance > limit) {
             break;
         }
         queue.pop();
-        if found.order.len().is_multiple_of(REPORT_EVERY) {
-            progress.report(found.order.len() as f64 / count as f64)?;
+        if order.len().is_multiple_of(REPORT_EVERY) {
+            progress.report(order.len() as f64 / count as f64)?;
         }
-        found.order.push(v);
+        order.push(v);
         match until {
             Until::FirstOf(targets) if targets.contains(v) => break,
             Until::Reached(targets) if targets.contains(v) => missing -= 1,
             _ => {}
         }
-        for h in mesh.vertex_halfedges(v) {
-            let w = mesh.to(h);
+        spokes(mesh, v, reached[v].arrival, &mut ring);
+        for &(h, w) in &ring {
+            let reached = &mut reached[w];
+            if reached.distance <= distance {
+                continue;
+            }
             let through_v = distance + lengths[h.edge()];
-            if through_v < found.distance[w] {
-                found.distance[w] = through_v;
-                found.arrival[w] = Some(h);
-                queue.set(w, through_v);
+            if through_v < reached.distance {
+                *reached = Reached { distance: through_v, arrival: Some(h) };
+                queue.push(Reverse(Entry::new(through_v, w)));
             }
         }
     }
     // What is still in the queue has a path, but maybe not its shortest.
-    while let Some((v, _)) = queue.pop() {
-        found.distance[v] = f64::INFINITY;
-        found.arrival[v] = None;
+    for Reverse(entry) in queue {
+        if entry.distance() <= reached[entry.vertex()].distance {
+            reached[entry.vertex()] = Reached::NEVER;
+        }
     }
-    Ok(found)
+    Ok(ShortestPaths {
+        distance: reached.map(|reached| reached.distance),
+        arrival: reached.map(|reached| reached.arrival),
+        order,
+    })
+}
+
+/// The best path to a vertex so far. What is asked for together lies together: on a mesh in no order
+/// each vertex is a wait for memory.
+#[derive(Clone, Copy)]
+struct Reached {
+    distance: f64,
+    arrival: Option<HalfedgeId>,
+}
+
+impl Reached {
+    const NEVER: Reached = Reached { distance: f64::INFINITY, arrival: None };
+}
+
+/// A distance and a vertex as one number, in the order of distances and then of vertices: the bits of
+/// numbers that are not negative are in their order, and numbers are compared without a branch.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry(u128);
+
+impl Entry {
+    #[inline]
+    fn new(distance: f64, v: VertexId) -> Self {
+        Entry(u128::from(distance.to_bits()) << 32 | v.index() as u128)
+    }
+
+    #[inline]
+    fn distance(self) -> f64 {
+        f64::from_bits((self.0 >> 32) as u64)
+    }
+
+    #[inline]
+    fn vertex(self) -> VertexId {
+        VertexId::new(self.0 as u32 as usize)
+    }
+}
+
+/// Collects the half-edges that leave `v` and where they lead, counterclockwise.
+///
+/// Starts from where the search came from, which was looked at not long ago. The ends are read before
+/// anything is asked about them, so that the processor does not wait for one after the other.
+#[inline]
+fn spokes(
+    mesh: &Connectivity,
+    v: VertexId,
+    arrival: Option<HalfedgeId>,
+    ring: &mut Vec<(HalfedgeId, VertexId)>,
+) {
+    ring.clear();
+    let Some(start) = arrival.map(HalfedgeId::twin).or_else(|| mesh.vertex_halfedge(v)) else {
+        return;
+    };
+    let mut h = start;
+    loop {
+        ring.push((h, mesh.to(h)));
+        h = mesh.ccw(h);
+        if h == start {
+            return;
+        }
+    }
 }
 
 /// Vertices between two reports: some milliseconds.

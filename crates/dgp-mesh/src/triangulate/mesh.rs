@@ -178,7 +178,6 @@ fn apply(mesh: &mut Mesh, cuts: &[Cut]) -> FaceMap<FaceId> {
                 for vertex in [to, from] {
                     // Links and face follow with the triangles on either side.
                     connectivity.to.push(vertex);
-                    connectivity.next.push(h);
                     connectivity.prev.push(h);
                     connectivity.face.push(None);
                 }
@@ -188,7 +187,6 @@ fn apply(mesh: &mut Mesh, cuts: &[Cut]) -> FaceMap<FaceId> {
             });
             for k in 0..3 {
                 let (h, following) = (triangle[k], triangle[(k + 1) % 3]);
-                connectivity.next[h] = following;
                 connectivity.prev[following] = h;
                 connectivity.face[h] = Some(face);
             }

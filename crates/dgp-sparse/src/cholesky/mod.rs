@@ -18,21 +18,13 @@
 
 mod diagnose;
 mod inertia;
+mod kernel;
+mod numeric;
 mod solve;
+mod supernodes;
 mod symbolic;
 
 use std::{fmt, sync::Arc};
-
-use faer::{
-    Par, Spec,
-    dyn_stack::{MemBuffer, MemStack},
-    linalg::cholesky::llt::factor::{LltError, LltParams, LltRegularization},
-    prelude::default,
-    sparse::{
-        SparseColMatRef, SymbolicSparseColMatRef,
-        linalg::cholesky::supernodal::factorize_supernodal_numeric_llt,
-    },
-};
 
 pub(crate) use diagnose::{component, sums_to_zero};
 pub use symbolic::SymbolicCholesky;
@@ -140,35 +132,14 @@ impl Cholesky {
 
     /// L from the lower triangle; the place of the pivot that is not positive, if there is one.
     fn factor(&mut self) -> Result<(), usize> {
-        let symbolic = &*self.symbolic;
-        let n = symbolic.rows();
-        let blocks = symbolic.blocks();
-        if self.factor.len() != blocks.len_val() {
+        let entries = self.symbolic.stored_entries();
+        if self.factor.len() == entries {
+            self.factor.fill(0.0);
+        } else {
             // Zeros that the system hands out are not written twice.
-            self.factor = vec![0.0; blocks.len_val()];
+            self.factor = vec![0.0; entries];
         }
-        if n == 0 {
-            return Ok(());
-        }
-        let (starts, rows) = symbolic.lower_pattern();
-        let pattern = SymbolicSparseColMatRef::new_unsorted_checked(n, n, starts, None, rows);
-        let lower = SparseColMatRef::new(pattern, &self.lower);
-        // One thread: on blocks of this size more of them lose.
-        let params: Spec<LltParams, f64> = default();
-        let mut memory = MemBuffer::new(symbolic.scratch());
-        let factored = factorize_supernodal_numeric_llt(
-            &mut self.factor,
-            lower,
-            LltRegularization::default(),
-            blocks,
-            Par::Seq,
-            MemStack::new(&mut memory),
-            params,
-        );
-        match factored {
-            Ok(_) => Ok(()),
-            Err(LltError::NonPositivePivot { index }) => Err(index),
-        }
+        self.symbolic.factor_numbers(&self.lower, &mut self.factor)
     }
 
     /// What does not depend on the values.

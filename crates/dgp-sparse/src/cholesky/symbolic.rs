@@ -3,12 +3,7 @@
 use std::fmt;
 
 use faer::{
-    Par,
-    dyn_stack::{MemBuffer, MemStack, StackReq},
-    linalg::{
-        cholesky::llt::factor::{LltParams, cholesky_in_place_scratch},
-        temp_mat_scratch,
-    },
+    dyn_stack::{MemBuffer, MemStack},
     sparse::{
         SymbolicSparseColMatRef,
         linalg::{
@@ -26,10 +21,11 @@ use faer::{
     },
 };
 
-use super::CholeskyOptions;
+use super::{CholeskyOptions, supernodes::Supernodes};
 use crate::{
     Error, MAX_ENTRIES, Progress, SparseMatrix,
     order::{Graph, NONE, Tree, order},
+    parallel,
 };
 
 /// The order of elimination and the pattern of the factor, for all matrices with one pattern.
@@ -44,9 +40,9 @@ pub struct SymbolicCholesky {
     lower_rows: Vec<u32>,
     sources: Vec<u32>,
     blocks: SymbolicSupernodalCholesky<u32>,
-    /// The largest number of rows below the diagonal of a block, and of its columns.
+    supernodes: Supernodes,
+    /// The largest number of rows below the diagonal of a block.
     tallest: usize,
-    widest: usize,
 }
 
 impl SymbolicCholesky {
@@ -72,11 +68,11 @@ impl SymbolicCholesky {
             let kind = "entries of the factor";
             return Err(Error::TooLarge { kind, count: entries, limit: MAX_ENTRIES });
         }
-        let (lower_starts, lower_rows, sources) = lower_triangle(matrix, &tree);
-        let blocks = blocks(&graph, &tree)?;
+        let ((lower_starts, lower_rows, sources), blocks) =
+            parallel::join(|| lower_triangle(matrix, &tree), || blocks(&graph, &tree));
+        let blocks = blocks?;
         let tallest = blocks.nnz_per_super().iter().map(|&rows| rows as usize).max().unwrap_or(0);
-        let ends = blocks.supernode_begin().iter().zip(blocks.supernode_end());
-        let widest = ends.map(|(&begin, &end)| (end - begin) as usize).max().unwrap_or(0);
+        let supernodes = Supernodes::new(&blocks);
         progress.report(1.0)?;
         Ok(SymbolicCholesky {
             starts: matrix.starts().to_vec(),
@@ -86,8 +82,8 @@ impl SymbolicCholesky {
             lower_rows,
             sources,
             blocks,
+            supernodes,
             tallest,
-            widest,
         })
     }
 
@@ -124,17 +120,20 @@ impl SymbolicCholesky {
         self.tallest
     }
 
-    /// What the factorization of the blocks needs at most.
-    ///
-    /// faer's own function goes through all pairs of blocks that meet, nearly as long as factoring small
-    /// ones takes. What it adds up for a pair grows with the sizes of both.
-    pub(super) fn scratch(&self) -> StackReq {
-        let (n, tallest, widest) = (self.rows(), self.tallest, self.widest);
-        let indices = [n, tallest, tallest.min(widest)].map(StackReq::new::<u32>);
-        let product = temp_mat_scratch::<f64>(tallest, widest.min(tallest));
-        let params = faer::Spec::<LltParams, f64>::default();
-        let block = cholesky_in_place_scratch::<f64>(widest, Par::Seq, params);
-        StackReq::all_of(&indices).and(product).and(block)
+    /// The tree of the blocks.
+    pub(super) fn supernodes(&self) -> &Supernodes {
+        &self.supernodes
+    }
+
+    /// The number of columns of a block.
+    pub(super) fn block_columns(&self, block: usize) -> usize {
+        (self.blocks.supernode_end()[block] - self.blocks.supernode_begin()[block]) as usize
+    }
+
+    /// The rows of a block below its square.
+    pub(super) fn block_rows(&self, block: usize) -> &[u32] {
+        let start = self.blocks.col_ptr_for_row_idx()[block] as usize;
+        &self.blocks.row_idx()[start..start + self.blocks.nnz_per_super()[block] as usize]
     }
 
     /// Starts and rows of the lower triangle in the order of elimination.

@@ -1,5 +1,6 @@
 //! `dgp info`: topology, geometry and quality of a whole, and what is around single elements.
 
+mod euler;
 pub(super) mod query;
 mod values;
 
@@ -9,7 +10,7 @@ use clap::Args;
 use dgp::{
     io::Document,
     mesh::{
-        AttributeTable, Id, IndexedFaceSet,
+        AttributeTable, Id, IndexedFaceSet, Progress,
         measure::{self, BoundingBox},
         topology::{self, TopologyReport},
     },
@@ -30,6 +31,10 @@ pub(crate) struct Info {
     input: Input,
     #[command(flatten)]
     queries: Queries,
+    /// What Euler's formula says: whether it is a regular solid, Σ (6 − k) F(k), whether its edges can be
+    /// drawn in the plane or why not, how many colors its vertices need
+    #[arg(long)]
+    euler: bool,
 }
 
 impl Info {
@@ -39,12 +44,20 @@ impl Info {
         let facts = session.run("measuring", |_| Ok::<_, Failure>(Facts::of(&document.set)))?;
         let mut report = facts.to_json(&document);
         let mut text = facts.to_text(&document);
-        if !self.queries.is_empty() {
+        if self.euler || !self.queries.is_empty() {
             let mesh = session.mesh(&self.input, &document)?;
+            if self.euler {
+                let work = |progress: Progress<'_>| euler::facts(&mesh, progress);
+                let (facts, lines) = session.run("drawing edges", work)?;
+                report["euler"] = facts;
+                text += &lines;
+            }
             let (answers, lines) =
                 self.queries.answers(&mesh).map_err(|e| e.in_file(&self.input.path))?;
-            report["queries"] = answers;
-            text += &lines;
+            if !self.queries.is_empty() {
+                report["queries"] = answers;
+                text += &lines;
+            }
         }
         session.finish(&text, &report)?;
         Ok(ExitCode::SUCCESS)

@@ -1,31 +1,44 @@
 //! First cuts of blocks, where they have a few hundred vertices.
 //!
-//! Two vertices u and w far from each other are found by walking to the farthest one twice. Vertices
-//! are sorted by d(u) − d(w), the lighter half goes to u, and what borders on the other half becomes
-//! the cut, which is then improved. That is done in several directions; the lightest cut counts.
+//! Vertices are sorted by their distance to a vertex u, or by d(u) − d(w) for two far from each other, and
+//! the lighter half goes to one side. That is done in several directions on clusters of the block; the
+//! best halves, by the edges between them, are improved on the block itself. What borders there on the
+//! other half becomes the cut.
 
 use super::{
     LEAF,
     coarsen::{Level, Weighted, cluster},
+    halves::HalfImprover,
     regions::Regions,
     separator::{CUT, Cut, Improver, Local},
 };
 use crate::{order::NONE, parallel};
 
-/// How many directions are tried.
-const DIRECTIONS: u32 = 4;
+/// How many directions are tried for large blocks, of which there are few, and for others.
+const DIRECTIONS: [u32; 2] = [4, 3];
 
-/// How often each first cut is improved, at most.
+/// How often first halves are improved, at most, and how often the best of them and their cut.
+const FIRST_PASSES: usize = 2;
 const PASSES: usize = 4;
 
 /// A component with less than this part of the weight leaves room for others on its side.
 const LARGE: f64 = 0.6;
 
-/// Blocks of more vertices are clustered before they are cut.
-const COARSEST: usize = 1500;
+/// Blocks of more vertices are clustered before they are halved.
+const COARSEST: usize = 200;
 
 /// Vertices per cluster where they are: few, since there is time for it.
-const CLUSTER: usize = 2;
+const CLUSTER: usize = 3;
+
+/// Blocks that weigh more are large.
+const LARGE_BLOCK: i64 = 10_000;
+
+/// Halves of a large block that weighs w are hard to find where more than this many √w edges join them:
+/// a sphere has 2 to 5.
+const HARD: f64 = 3.0;
+
+/// How often they are looked for then, each time with other clusters.
+const ATTEMPTS: usize = 2;
 
 /// Blocks that one task cuts.
 const CHUNK: usize = 4;
@@ -36,6 +49,7 @@ pub(super) fn split_blocks(
     label: &mut [u32],
     regions: &mut Regions,
     most: usize,
+    seed: u32,
 ) {
     let (starts, members) = regions.members(label);
     let mut place = vec![0_u32; members.len()];
@@ -56,7 +70,7 @@ pub(super) fn split_blocks(
         large.map(|region| (region, Division::default())).collect();
     let labels = &*label;
     parallel::map_chunks(&mut divisions, CHUNK, |_, divisions| {
-        let mut bisector = Bisector { most, ..Bisector::default() };
+        let mut bisector = Bisector { most, seed, ..Bisector::default() };
         for (region, division) in divisions {
             let block = of(*region);
             let start = starts[*region as usize];
@@ -148,7 +162,10 @@ fn divide(graph: &Local, ids: &[u32], node: u32, out: &mut Division, bisector: &
 struct Bisector {
     /// Blocks with fewer vertices are not cut.
     most: usize,
+    /// Decides where searches start.
+    seed: u32,
     improver: Improver,
+    halves: HalfImprover,
     queue: Vec<u32>,
     renumbering: Vec<u32>,
 }
@@ -202,44 +219,62 @@ impl Bisector {
         self.distribute(graph, others, side)
     }
 
-    /// A cut found on a graph of clusters and improved on this one.
+    /// A cut between halves.
     fn cut(&mut self, graph: &Local) -> Cut {
-        if graph.len() <= COARSEST {
-            return self.first_cut(graph);
+        let total: i64 = (0..graph.len()).map(|v| graph.weighs(v)).sum();
+        let mut best = self.halve(graph, total, self.seed);
+        let hard = best.0 as f64 > HARD * (total as f64).sqrt();
+        if total > LARGE_BLOCK && graph.len() > COARSEST && hard {
+            for attempt in 1..ATTEMPTS {
+                let other = self.halve(graph, total, self.seed + 10 * attempt as u32);
+                if other.0 < best.0 {
+                    best = other;
+                }
+            }
         }
-        let Some((cluster, coarse)) = cluster(graph, CLUSTER) else { return self.first_cut(graph) };
-        let coarse_cut = self.cut(&coarse);
-        let side = cluster.iter().map(|&c| coarse_cut.side[c as usize]).collect();
-        let mut cut = Cut::new(graph, side);
+        let mut cut = thin(graph, best.1);
         self.improver.improve(graph, &mut cut, PASSES);
         cut
     }
 
-    /// The lightest of cuts in several directions.
-    fn first_cut(&mut self, graph: &Local) -> Cut {
-        let n = graph.len() as u32;
-        let total: i64 = (0..graph.len()).map(|v| graph.weighs(v)).sum();
-        let mut best: Option<Cut> = None;
-        let mut start = 0;
-        for direction in 0..DIRECTIONS {
-            let first = self.distances(graph, start).1;
-            let (to_first, second) = self.distances(graph, first);
-            let to_second = self.distances(graph, second).0;
-            let mut cut = halve(graph, &to_first, &to_second, total);
-            self.improver.improve(graph, &mut cut, PASSES);
-            if best.as_ref().is_none_or(|best| cut.quality() < best.quality()) {
-                best = Some(cut);
+    /// Halves found on a graph of clusters and improved on this one, and how bad they are.
+    fn halve(&mut self, graph: &Local, total: i64, seed: u32) -> (i64, Vec<u8>) {
+        if graph.len() > COARSEST {
+            let start = scattered(seed, graph.len() as u32) as usize;
+            if let Some((cluster, coarse)) = cluster(graph, CLUSTER, start) {
+                let (_, halves) = self.halve(&coarse, total, seed);
+                let mut side: Vec<u8> = cluster.iter().map(|&c| halves[c as usize]).collect();
+                let quality = self.halves.improve(graph, &mut side, PASSES);
+                return (quality, side);
             }
-            // Across the first direction; then from anywhere.
-            start = match direction {
-                0 => {
-                    let across = |&v: &u32| to_first[v as usize].min(to_second[v as usize]);
-                    (0..n).max_by_key(across).unwrap_or(0)
-                }
-                _ => direction.wrapping_mul(0x9e37_79b9) % n,
-            };
         }
-        best.expect("at least one direction is tried")
+        self.first_halves(graph, total, seed)
+    }
+
+    /// The best of halves around several vertices, and how bad they are.
+    fn first_halves(&mut self, graph: &Local, total: i64, seed: u32) -> (i64, Vec<u8>) {
+        let n = graph.len() as u32;
+        let directions = DIRECTIONS[usize::from(total <= LARGE_BLOCK)];
+        let mut start = scattered(seed, n);
+        let mut best = (i64::MAX, Vec::new());
+        for direction in 0..directions {
+            let mut side = if direction % 2 == 0 {
+                // Between two vertices far from each other.
+                let first = self.distances(graph, start).1;
+                let (to_first, second) = self.distances(graph, first);
+                let to_second = self.distances(graph, second).0;
+                nearest(graph, total, |v| to_first[v] + n - to_second[v])
+            } else {
+                let (to_start, _) = self.distances(graph, start);
+                nearest(graph, total, |v| to_start[v])
+            };
+            let quality = self.halves.improve(graph, &mut side, FIRST_PASSES);
+            if quality < best.0 {
+                best = (quality, side);
+            }
+            start = scattered(direction + 1 + 16 * seed, n);
+        }
+        best
     }
 
     /// First vertex and weight of each component.
@@ -313,14 +348,18 @@ impl Bisector {
     }
 }
 
-/// The half of the weight that is nearer to the first end, and a cut between it and the rest.
-fn halve(graph: &Local, first: &[u32], second: &[u32], total: i64) -> Cut {
+/// One of `n` numbers, far from those for other seeds.
+fn scattered(seed: u32, n: u32) -> u32 {
+    seed.wrapping_mul(0x9e37_79b9) % n
+}
+
+/// On side 0 the half of the weight for which `key`, a number below twice that of the vertices, is smallest.
+fn nearest(graph: &Local, total: i64, key: impl Fn(usize) -> u32) -> Vec<u8> {
     let n = graph.len();
-    // Counting sort by the difference.
-    let key = |v: usize| (first[v] + n as u32 - second[v]) as usize;
+    // Counting sort.
     let mut weight_of = vec![0_i64; 2 * n + 1];
     for v in 0..n {
-        weight_of[key(v)] += graph.weighs(v);
+        weight_of[key(v) as usize] += graph.weighs(v);
     }
     let (mut below, mut level) = (0, 0);
     while 2 * (below + weight_of[level]) <= total {
@@ -330,7 +369,7 @@ fn halve(graph: &Local, first: &[u32], second: &[u32], total: i64) -> Cut {
     // Of the level that contains the half, vertices go to the first side until it is full.
     let mut side = vec![1_u8; n];
     for (v, side) in side.iter_mut().enumerate() {
-        let key = key(v);
+        let key = key(v) as usize;
         if key < level {
             *side = 0;
         } else if key == level && 2 * below < total {
@@ -338,8 +377,13 @@ fn halve(graph: &Local, first: &[u32], second: &[u32], total: i64) -> Cut {
             *side = 0;
         }
     }
+    side
+}
+
+/// The vertices of the lighter border between two halves become the cut.
+fn thin(graph: &Local, mut side: Vec<u8>) -> Cut {
     let borders = |v: usize| graph.neighbors(v).iter().any(|&w| side[w as usize] != side[v]);
-    let border: Vec<usize> = (0..n).filter(|&v| borders(v)).collect();
+    let border: Vec<usize> = (0..graph.len()).filter(|&v| borders(v)).collect();
     let mut weights = [0; 2];
     for &v in &border {
         weights[usize::from(side[v])] += graph.weighs(v);

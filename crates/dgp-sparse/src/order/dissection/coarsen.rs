@@ -112,7 +112,7 @@ pub(super) fn coarsen<'a>(
             return Ok(levels);
         }
         progress.report(1.0 - fine.len() as f64 / graph.len() as f64)?;
-        let Some((cluster, coarse)) = cluster(fine, CLUSTER) else { return Ok(levels) };
+        let Some((cluster, coarse)) = cluster(fine, CLUSTER, 0) else { return Ok(levels) };
         let Local { starts, neighbors, weights, edge_weights, .. } = coarse;
         let graph = Borrowed::Coarse(Graph::new(starts, neighbors));
         let coarse = Level { graph, weights, edge_weights, cluster: None };
@@ -124,11 +124,15 @@ pub(super) fn coarsen<'a>(
 }
 
 /// The cluster of each vertex, of about `size` vertices each, and the graph of the clusters; `None` when
-/// clustering has come to an end.
-pub(super) fn cluster(fine: &impl Weighted, size: usize) -> Option<(Vec<u32>, Local)> {
+/// clustering has come to an end. The first cluster is the one of vertex `start`.
+pub(super) fn cluster(
+    fine: &impl Weighted,
+    size: usize,
+    start: usize,
+) -> Option<(Vec<u32>, Local)> {
     let total: u64 = (0..fine.len()).map(|v| u64::from(fine.weight(v))).sum();
     let most = 3 * size as u64 * total / (2 * fine.len() as u64);
-    let (cluster, count) = clusters(fine, most.max(2), size);
+    let (cluster, count) = clusters(fine, most.max(2), size, start);
     if count as f64 > STALLED * fine.len() as f64 {
         return None;
     }
@@ -137,14 +141,14 @@ pub(super) fn cluster(fine: &impl Weighted, size: usize) -> Option<(Vec<u32>, Lo
 }
 
 /// The cluster of each vertex, and how many there are. None grows beyond the weight `most`.
-fn clusters(level: &impl Weighted, most: u64, size: usize) -> (Vec<u32>, usize) {
+fn clusters(level: &impl Weighted, most: u64, size: usize, start: usize) -> (Vec<u32>, usize) {
     let n = level.len();
     let mut cluster = vec![NONE; n];
     let mut weight_of: Vec<u64> = Vec::with_capacity(n / size + 1);
     // Edges from each vertex to the cluster that grows.
     let mut bonds = vec![0_u32; n];
     let mut candidates: Vec<u32> = Vec::new();
-    for v in 0..n {
+    for v in (start..n).chain(0..start) {
         if cluster[v] != NONE {
             continue;
         }

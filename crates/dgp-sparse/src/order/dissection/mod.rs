@@ -23,6 +23,7 @@
 
 mod bisect;
 mod coarsen;
+mod halves;
 mod refine;
 mod regions;
 mod separator;
@@ -31,8 +32,10 @@ use super::{
     Graph, NONE,
     minimum_degree::{MinimumDegree, dense_limit},
 };
+use std::ops::Range;
+
 use crate::{Error, Progress, parallel};
-use coarsen::{Weighted, coarsen};
+use coarsen::{Level, Weighted, coarsen};
 use regions::Regions;
 
 /// Blocks that weigh no more are not cut further: minimum degree orders them as well.
@@ -44,6 +47,17 @@ const BLOCK: usize = 350;
 
 /// The same on the finest level, where only what could not be clustered is as large.
 const FINEST_BLOCK: usize = 2000;
+
+/// Levels with fewer than this part of the vertices are where everything is decided, at little cost.
+const COARSE: usize = 32;
+
+/// The first cut of a surface like a sphere of n vertices weighs 6 to 8 √n on a coarse level. Where it
+/// weighs more than this many √n there are many handles, and cuts that differ more: it pays to find
+/// several and keep the best.
+const HARD: f64 = 9.8;
+
+/// How many are found then.
+const ATTEMPTS: u32 = 12;
 
 /// An order for the whole of `graph`.
 pub(crate) fn dissection(graph: &Graph, progress: Progress<'_>) -> Result<Vec<u32>, Error> {
@@ -64,21 +78,73 @@ pub(crate) fn dissection(graph: &Graph, progress: Progress<'_>) -> Result<Vec<u3
 fn dissect(graph: &Graph, progress: Progress<'_>) -> Result<Vec<u32>, Error> {
     let n = graph.len();
     let levels = coarsen(graph, progress.part(0.0, 0.3))?;
-    let mut regions = Regions::new(n as u64);
-    let mut label = vec![0_u32; levels.last().map_or(n, Weighted::len)];
-    for (depth, level) in levels.iter().enumerate().rev() {
-        progress.report(0.3 + 0.4 * (levels.len() - depth) as f64 / levels.len() as f64)?;
-        if let Some(cluster) = &level.cluster {
-            label = cluster.iter().map(|&c| label[c as usize]).collect();
-            refine::refine(level, &mut label, &mut regions);
-        }
-        let most = if depth == 0 { FINEST_BLOCK } else { BLOCK };
-        bisect::split_blocks(level, &mut label, &mut regions, most);
+    let coarse = levels.iter().position(|level| COARSE * level.len() < n).unwrap_or(levels.len());
+    let mut cuts = Cuts::new(&levels);
+    for depth in (coarse..levels.len()).rev() {
+        progress.report(0.3)?;
+        cuts.descend(&levels, depth, 0);
     }
+    if cuts.regions.weight_of_cut(0) as f64 > HARD * (n as f64).sqrt() {
+        progress.report(0.3)?;
+        cuts = cuts.or_better(&levels, coarse..levels.len());
+    }
+    for depth in (0..coarse).rev() {
+        progress.report(0.4 + 0.3 * (coarse - depth) as f64 / coarse as f64)?;
+        cuts.descend(&levels, depth, 0);
+    }
+    let Cuts { label, regions } = cuts;
     progress.report(0.7)?;
     let order = eliminate(graph, &label, &regions);
     progress.report(1.0)?;
     Ok(order)
+}
+
+/// The cuts found so far.
+struct Cuts {
+    /// Of each vertex of the present level.
+    label: Vec<u32>,
+    regions: Regions,
+}
+
+impl Cuts {
+    /// None, on the coarsest level.
+    fn new(levels: &[Level<'_>]) -> Cuts {
+        let n = levels[0].len();
+        let label = vec![0; levels.last().map_or(n, Weighted::len)];
+        Cuts { label, regions: Regions::new(n as u64) }
+    }
+
+    /// Goes down to the level `depth` from the one above it: improves all cuts, and cuts large blocks.
+    /// What it starts from depends on `seed`.
+    fn descend(&mut self, levels: &[Level<'_>], depth: usize, seed: u32) {
+        let level = &levels[depth];
+        if let Some(cluster) = &level.cluster {
+            self.label = cluster.iter().map(|&c| self.label[c as usize]).collect();
+            refine::refine(level, &mut self.label, &mut self.regions);
+        }
+        let most = if depth == 0 { FINEST_BLOCK } else { BLOCK };
+        bisect::split_blocks(level, &mut self.label, &mut self.regions, most, seed);
+    }
+
+    /// The best of these cuts, which were found on a range of levels, and some that start elsewhere.
+    fn or_better(self, levels: &[Level<'_>], range: Range<usize>) -> Cuts {
+        let mut others: Vec<u32> = (1..ATTEMPTS).collect();
+        let others = parallel::map_chunks(&mut others, 1, |_, seed| {
+            let mut cuts = Cuts::new(levels);
+            for depth in range.clone().rev() {
+                cuts.descend(levels, depth, seed[0]);
+            }
+            cuts
+        });
+        let all = std::iter::once(self).chain(others);
+        all.min_by(|a, b| a.cost().total_cmp(&b.cost())).expect("there is one at least")
+    }
+
+    /// About the entries of the factor that are due to the cuts.
+    fn cost(&self) -> f64 {
+        let regions = 0..self.regions.len() as u32;
+        regions.map(|region| (self.regions.weight_of_cut(region) as f64).powi(2)).sum()
+    }
 }
 
 /// The graph of some vertices, renumbered as they are listed.

@@ -12,7 +12,7 @@ use super::{
 use crate::order::NONE;
 
 /// How far from the cut vertices take part; the last of these rings stays fixed.
-const RINGS: usize = 3;
+const RINGS: usize = 2;
 
 /// How often each cut is improved, at most.
 const PASSES: usize = 3;

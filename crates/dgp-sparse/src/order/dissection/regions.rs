@@ -49,6 +49,14 @@ impl Regions {
         self.regions[region as usize].weight
     }
 
+    /// What the vertices that cut a region weigh.
+    pub(super) fn weight_of_cut(&self, region: u32) -> u64 {
+        match self.parts(region) {
+            [NONE, _] => 0,
+            parts => self.weight(region) - parts.map(|part| self.weight(part)).iter().sum::<u64>(),
+        }
+    }
+
     pub(super) fn can_be_cut(&self, region: u32) -> bool {
         self.regions[region as usize].depth < MAX_DEPTH
     }

@@ -1,0 +1,276 @@
+//! Subdivision of a mesh with the data that travel with it.
+//!
+//! - Input: a mesh that suits the scheme (see [`RefinementPlan::new`]) with finite coordinates.
+//! - Cost: that of a plan, and of joining the refined faces; data cost a mix per element and level.
+//! - Guarantees: no position is infinite or no number; groups, texture coordinates, colors and the user's
+//!   data travel.
+//!
+//! | data of | become |
+//! |---|---|
+//! | vertices | mixed by the same stencils as positions |
+//! | corners | within each face or chart (see [`FaceVarying`]), so seams stay; left out by √3, which flips edges |
+//! | edges | those of the two halves; defaults inside faces. Left out by √3 and Doo–Sabin |
+//! | faces | those of the face of the cage |
+
+use dgp_mesh::{Connectivity, DVec3, FaceId, FaceList, HalfedgeId, Mesh, Progress, VertexId};
+
+use crate::{
+    Counts, Error, RefinementOptions, RefinementPlan, SHARPNESS, Scheme, Sharpness,
+    face_varying::{FaceVarying, refined_corners},
+    options::BoundaryRule,
+    topology::{NONE, Topology},
+};
+
+/// How [`subdivide`] refines.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SubdivisionOptions {
+    /// Scheme, levels, rims, memory.
+    pub refinement: RefinementOptions,
+    /// Where the vertices of the result are.
+    pub surface: Surface,
+    /// How data of corners, such as texture coordinates, are refined.
+    pub face_varying: FaceVarying,
+}
+
+/// Where refined vertices are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Surface {
+    /// Where the last level has them, so that the result can be refined further.
+    #[default]
+    Refined,
+    /// On the limit surface.
+    Limit,
+}
+
+/// What [`subdivide`] did.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use]
+pub struct SubdivisionReport {
+    /// Elements of the cage.
+    pub cage: Counts,
+    /// Elements of the result.
+    pub refined: Counts,
+    /// V − E + F of the cage and of the result.
+    pub euler_characteristic: [i64; 2],
+    /// The bytes predicted for the plan and the refined mesh.
+    pub predicted_bytes: u64,
+    /// The attributes that could not be carried along.
+    pub left_out: Vec<String>,
+}
+
+/// The mesh refined, with its data, and what is sharp still in the attributes [`SHARPNESS`] if the mesh
+/// had any.
+///
+/// Errors: those of [`RefinementPlan::new`]; [`Error::NotFinite`]; [`Error::NoLimit`] if limit positions
+/// are asked of a scheme that has none; [`Error::Mesh`] if faces at holes are left out and what remains
+/// hangs together at a vertex only.
+///
+/// ```
+/// use dgp_mesh::{Progress, shapes};
+/// use dgp_subdiv::{RefinementOptions, Sharpness, SubdivisionOptions, subdivide};
+///
+/// let refinement = RefinementOptions { levels: 2, ..RefinementOptions::default() };
+/// let options = SubdivisionOptions { refinement, ..SubdivisionOptions::default() };
+/// let (mesh, report) = subdivide(&shapes::cube(), &Sharpness::new(), &options, Progress::NONE)?;
+/// assert_eq!((mesh.face_count(), report.euler_characteristic), (96, [2, 2]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn subdivide(
+    mesh: &Mesh,
+    sharpness: &Sharpness,
+    options: &SubdivisionOptions,
+    progress: Progress<'_>,
+) -> Result<(Mesh, SubdivisionReport), Error> {
+    check_finite(mesh.positions().values())?;
+    let plan = RefinementPlan::new(mesh, sharpness, &options.refinement, progress.part(0.0, 0.4))?;
+    let mut positions = plan.refine(mesh.positions().values())?;
+    if options.surface == Surface::Limit {
+        positions = plan.limit(&positions)?;
+    }
+    check_finite(&positions)?;
+    progress.report(0.6)?;
+    let result = Selection::new(mesh, &plan);
+    let mut refined = result.join(&plan, positions)?;
+    progress.report(0.8)?;
+    let left_out =
+        carry((mesh, sharpness), options, (&plan, &result), &mut refined, progress.part(0.8, 1.0))?;
+    let counts = |mesh: &Connectivity| Counts {
+        vertices: mesh.vertex_count() as u64,
+        edges: mesh.edge_count() as u64,
+        corners: mesh.halfedges().filter(|&h| !mesh.is_boundary_halfedge(h)).count() as u64,
+        faces: mesh.face_count() as u64,
+    };
+    let report = SubdivisionReport {
+        cage: counts(mesh),
+        refined: counts(&refined),
+        euler_characteristic: [mesh.connectivity(), refined.connectivity()]
+            .map(dgp_mesh::topology::euler_characteristic),
+        predicted_bytes: plan.predicted_bytes(),
+        left_out,
+    };
+    Ok((refined, report))
+}
+
+pub(crate) fn check_finite(positions: &[DVec3]) -> Result<(), Error> {
+    match positions.iter().position(|p| !p.is_finite()) {
+        Some(vertex) => Err(Error::NotFinite { vertex: VertexId::new(vertex) }),
+        None => Ok(()),
+    }
+}
+
+/// Which faces of the last level become those of the result, and the vertices and corners with them.
+struct Selection {
+    faces: Vec<u32>,
+    vertices: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl Selection {
+    fn new(mesh: &Mesh, plan: &RefinementPlan) -> Self {
+        let topology = &plan.last().topology;
+        let count = topology.vertex_count() as u32;
+        if plan.options().boundary != BoundaryRule::None {
+            return Selection {
+                faces: (0..topology.face_count() as u32).collect(),
+                vertices: (0..count).collect(),
+                corners: (0..topology.corner_count() as u32).collect(),
+            };
+        }
+        let touches = mesh.map_faces(|f| mesh.face_vertices(f).any(|v| mesh.is_boundary_vertex(v)));
+        let kept = plan.cage_faces();
+        let faces = kept.iter().filter(|(_, cage)| !touches[**cage]).map(|(f, _)| f.index() as u32);
+        let faces: Vec<u32> = faces.collect();
+        let corners: Vec<u32> = faces.iter().flat_map(|&f| topology.corners(f)).collect();
+        let mut is_used = vec![false; count as usize];
+        for &c in &corners {
+            is_used[topology.vertex(c) as usize] = true;
+        }
+        let vertices = (0..count).filter(|&v| is_used[v as usize]).collect();
+        Selection { faces, vertices, corners }
+    }
+
+    fn join(&self, plan: &RefinementPlan, positions: Vec<DVec3>) -> Result<Mesh, Error> {
+        let topology = &plan.last().topology;
+        if self.vertices.len() == positions.len() {
+            return Ok(Mesh::from_parts(plan.connectivity()?, positions.into()));
+        }
+        let mut number = vec![NONE; positions.len()];
+        self.vertices.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
+        let mut list = FaceList::new();
+        let mut face = Vec::new();
+        for &f in &self.faces {
+            face.clear();
+            let vertex = |c| VertexId::new(number[topology.vertex(c) as usize] as usize);
+            face.extend(topology.corners(f).map(vertex));
+            list.push(&face);
+        }
+        let positions: Vec<DVec3> = self.vertices.iter().map(|&v| positions[v as usize]).collect();
+        let connectivity = Connectivity::from_faces(positions.len(), &list)?;
+        Ok(Mesh::from_parts(connectivity, positions.into()))
+    }
+
+    /// For each half-edge of the result that has a face, its corner at the last level.
+    fn halfedge_corners(&self, topology: &Topology, refined: &Mesh) -> Vec<Option<u32>> {
+        let mut corners = vec![None; refined.halfedge_count()];
+        let mut rest = self.corners.as_slice();
+        for f in refined.faces() {
+            let (mine, others) = rest.split_at(topology.corners(topology.face(rest[0])).len());
+            rest = others;
+            // Both go around the same way, perhaps from another corner on.
+            let vertex = |v: VertexId| self.vertices[v.index()];
+            let start = topology.vertex(mine[0]);
+            let sides: Vec<HalfedgeId> = refined.face_halfedges(f).collect();
+            let first = sides.iter().position(|&h| vertex(refined.from(h)) == start);
+            let first = first.expect("a face keeps its corners");
+            for (k, &corner) in mine.iter().enumerate() {
+                corners[sides[(first + k) % sides.len()].index()] = Some(corner);
+            }
+        }
+        corners
+    }
+}
+
+/// Gives `refined` the data of `mesh`; returns the names of those that are left out.
+fn carry(
+    (mesh, sharpness): (&Mesh, &Sharpness),
+    options: &SubdivisionOptions,
+    (plan, result): (&RefinementPlan, &Selection),
+    refined: &mut Mesh,
+    progress: Progress<'_>,
+) -> Result<Vec<String>, Error> {
+    let (old, scheme) = (mesh.attributes(), plan.options().scheme);
+    let mut left_out = Vec::new();
+    if !old.vertex.is_empty() {
+        let mut data = old.vertex.clone();
+        for step in 0..plan.levels() {
+            data = plan.step_stencils(step)?.apply_attributes(&data)?;
+            progress.report(0.3 * (step + 1) as f64 / plan.levels() as f64)?;
+        }
+        let pick = |v: VertexId| Some(VertexId::new(result.vertices[v.index()] as usize));
+        refined.attributes_mut().vertex = data.gather(result.vertices.len(), pick);
+    }
+    if !old.face.is_empty() {
+        let cage_faces = plan.cage_faces();
+        let pick = |f: FaceId| Some(cage_faces[FaceId::new(result.faces[f.index()] as usize)]);
+        refined.attributes_mut().face = old.face.gather(result.faces.len(), pick);
+    }
+    progress.report(0.4)?;
+    if old.corner.is_empty() && old.edge.is_empty() {
+        return Ok(left_out);
+    }
+    let last = plan.last();
+    let corners = result.halfedge_corners(&last.topology, refined);
+    if scheme == Scheme::Sqrt3 {
+        left_out.extend(old.corner.names().map(str::to_owned));
+    } else if !old.corner.is_empty() {
+        let rule = options.face_varying;
+        let data = refined_corners(mesh, sharpness, plan, rule, progress.part(0.4, 0.9))?;
+        let pick = |h: HalfedgeId| corners[h.index()].map(|c| VertexId::new(c as usize));
+        refined.attributes_mut().corner = data.gather(corners.len(), pick);
+    }
+    if matches!(scheme, Scheme::Sqrt3 | Scheme::DooSabin) {
+        left_out.extend(old.edge.names().map(str::to_owned));
+    } else if !old.edge.is_empty() {
+        carry_edges(mesh, plan, &corners, refined);
+    }
+    carry_sharpness(plan, result, &corners, refined);
+    Ok(left_out)
+}
+
+/// Halves of edges get the data of the whole.
+fn carry_edges(mesh: &Mesh, plan: &RefinementPlan, corners: &[Option<u32>], refined: &mut Mesh) {
+    let halfedges = &plan.last().topology.corner_halfedge;
+    let edges = refined.edge_count();
+    let source = |e: dgp_mesh::EdgeId| {
+        let corner = e.halfedges().into_iter().find_map(|h| corners[h.index()]);
+        let number = halfedges[corner.expect("an edge has a face") as usize] as usize / 2;
+        // Each level numbers the halves of edge e 2e and 2e + 1 and all others beyond them.
+        let whole = number >> plan.levels();
+        (whole < mesh.edge_count()).then(|| dgp_mesh::EdgeId::new(whole))
+    };
+    refined.attributes_mut().edge = mesh.attributes().edge.gather(edges, source);
+}
+
+/// What is left of sharpness, in place of the mixes, where the mesh had any.
+fn carry_sharpness(
+    plan: &RefinementPlan,
+    result: &Selection,
+    corners: &[Option<u32>],
+    refined: &mut Mesh,
+) {
+    let level = plan.last();
+    if refined.attributes().edge.get::<f64>(SHARPNESS).is_some() {
+        let edges = refined.map_edges(|e| {
+            let corner = e.halfedges().into_iter().find_map(|h| corners[h.index()]);
+            let corner = corner.expect("an edge has a face") as usize;
+            let edge = level.topology.corner_halfedge[corner] as usize / 2;
+            level.creases.listed_edge(edge)
+        });
+        refined.attributes_mut().edge.insert(SHARPNESS, edges);
+    }
+    if refined.attributes().vertex.get::<f64>(SHARPNESS).is_some() {
+        let sharp = |v: VertexId| level.creases.vertex(result.vertices[v.index()] as usize);
+        let vertices = refined.map_vertices(sharp);
+        refined.attributes_mut().vertex.insert(SHARPNESS, vertices);
+    }
+}

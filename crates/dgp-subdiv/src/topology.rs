@@ -1,0 +1,259 @@
+//! The connectivity of one level, by corners: what a step of refinement reads and writes in order.
+//!
+//! Corners are counted face after face. The half-edges of edge e are 2e and 2e + 1, as in
+//! [`Connectivity`]; each corner knows the half-edge that starts there and each half-edge its corner, so
+//! the sides of a face need no links: they follow one another. The numbers of the children of a split are
+//! arithmetic on those of the parents (see [`split`](crate::split)), so no edge is ever searched for.
+
+use std::collections::HashMap;
+
+use dgp_mesh::{Connectivity, FaceList, HalfedgeId, VertexId};
+
+/// What a half-edge beside a hole has in place of a corner, and an isolated vertex of a half-edge.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Faces, edges and vertices of one level.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Topology {
+    pub(crate) starts: Starts,
+    /// The half-edge that starts at each corner.
+    pub(crate) corner_halfedge: Vec<u32>,
+    /// The corner each half-edge starts at, [`NONE`] at holes.
+    pub(crate) halfedge_corner: Vec<u32>,
+    /// The vertex each half-edge leaves.
+    pub(crate) from: Vec<u32>,
+    /// The first half-edge of each vertex, counterclockwise; at a hole the one that has it on its right.
+    pub(crate) vertex_halfedge: Vec<u32>,
+}
+
+/// Where the corners of each face begin.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Starts {
+    /// Each face has this many corners.
+    Every(u32),
+    /// Those of face f are at `starts[f]..starts[f + 1]`.
+    At {
+        /// The first corner of each face, and the number of corners.
+        starts: Vec<u32>,
+        /// The face of each corner.
+        corner_face: Vec<u32>,
+    },
+}
+
+impl Topology {
+    /// That of a mesh. Half-edges, faces and vertices keep their numbers.
+    pub(crate) fn new(mesh: &Connectivity) -> Self {
+        let mut corner_halfedge = Vec::with_capacity(mesh.halfedge_count());
+        let mut halfedge_corner = vec![NONE; mesh.halfedge_count()];
+        let mut starts = Vec::with_capacity(mesh.face_count() + 1);
+        starts.push(0);
+        for f in mesh.faces() {
+            for h in mesh.face_halfedges(f) {
+                halfedge_corner[h.index()] = corner_halfedge.len() as u32;
+                corner_halfedge.push(h.index() as u32);
+            }
+            starts.push(corner_halfedge.len() as u32);
+        }
+        let first_degree = starts.get(1).copied().unwrap_or(3);
+        let starts = if starts.windows(2).all(|pair| pair[1] - pair[0] == first_degree) {
+            Starts::Every(first_degree)
+        } else {
+            let degrees = starts.windows(2).zip(0..);
+            let corner_face = degrees
+                .flat_map(|(pair, f)| std::iter::repeat_n(f, (pair[1] - pair[0]) as usize))
+                .collect();
+            Starts::At { starts, corner_face }
+        };
+        let first = |v: VertexId| match mesh.vertex_halfedge(v) {
+            // At a hole the mesh keeps the half-edge without a face; the first one comes after it.
+            Some(h) if mesh.is_boundary_halfedge(h) => mesh.ccw(h).index() as u32,
+            Some(h) => h.index() as u32,
+            None => NONE,
+        };
+        let from = |h: HalfedgeId| mesh.from(h).index() as u32;
+        Topology {
+            starts,
+            corner_halfedge,
+            halfedge_corner,
+            from: mesh.map_halfedges(from).into_values(),
+            vertex_halfedge: mesh.map_vertices(first).into_values(),
+        }
+    }
+
+    /// The faces as lists of vertices.
+    pub(crate) fn faces(&self) -> FaceList {
+        let vertex = |&h: &u32| VertexId::new(self.from[h as usize] as usize);
+        let corners: Vec<VertexId> = self.corner_halfedge.iter().map(vertex).collect();
+        match &self.starts {
+            Starts::Every(degree) => FaceList::from_corners(corners, *degree as usize),
+            Starts::At { starts, .. } => FaceList::from_ends(corners, &starts[1..]),
+        }
+    }
+
+    pub(crate) fn vertex_count(&self) -> usize {
+        self.vertex_halfedge.len()
+    }
+
+    pub(crate) fn edge_count(&self) -> usize {
+        self.from.len() / 2
+    }
+
+    pub(crate) fn corner_count(&self) -> usize {
+        self.corner_halfedge.len()
+    }
+
+    pub(crate) fn face_count(&self) -> usize {
+        match &self.starts {
+            Starts::Every(degree) => self.corner_halfedge.len() / *degree as usize,
+            Starts::At { starts, .. } => starts.len() - 1,
+        }
+    }
+
+    #[inline]
+    pub(crate) fn face(&self, corner: u32) -> u32 {
+        match &self.starts {
+            Starts::Every(4) => corner >> 2,
+            Starts::Every(3) => corner / 3,
+            Starts::Every(degree) => corner / degree,
+            Starts::At { corner_face, .. } => corner_face[corner as usize],
+        }
+    }
+
+    /// The corners of a face.
+    #[inline]
+    pub(crate) fn corners(&self, face: u32) -> std::ops::Range<u32> {
+        match &self.starts {
+            Starts::Every(degree) => face * degree..(face + 1) * degree,
+            Starts::At { starts, .. } => starts[face as usize]..starts[face as usize + 1],
+        }
+    }
+
+    /// The following corner of the same face.
+    #[inline]
+    pub(crate) fn next(&self, corner: u32) -> u32 {
+        if let Starts::Every(4) = self.starts {
+            return corner & !3 | (corner + 1) & 3;
+        }
+        let corners = self.corners(self.face(corner));
+        if corner + 1 == corners.end { corners.start } else { corner + 1 }
+    }
+
+    /// The preceding corner of the same face.
+    #[inline]
+    pub(crate) fn prev(&self, corner: u32) -> u32 {
+        if let Starts::Every(4) = self.starts {
+            return corner & !3 | corner.wrapping_sub(1) & 3;
+        }
+        let corners = self.corners(self.face(corner));
+        if corner == corners.start { corners.end - 1 } else { corner - 1 }
+    }
+
+    /// The vertex at a corner.
+    #[inline]
+    pub(crate) fn vertex(&self, corner: u32) -> u32 {
+        self.from[self.corner_halfedge[corner as usize] as usize]
+    }
+
+    /// The vertex a half-edge arrives at.
+    #[inline]
+    pub(crate) fn to(&self, halfedge: u32) -> u32 {
+        self.from[halfedge as usize ^ 1]
+    }
+
+    /// The corner a half-edge starts at, [`NONE`] at a hole.
+    #[inline]
+    pub(crate) fn corner(&self, halfedge: u32) -> u32 {
+        self.halfedge_corner[halfedge as usize]
+    }
+
+    /// Whether an edge lacks a face.
+    #[inline]
+    pub(crate) fn is_boundary_edge(&self, edge: usize) -> bool {
+        self.halfedge_corner[2 * edge] == NONE || self.halfedge_corner[2 * edge + 1] == NONE
+    }
+
+    /// Whether a vertex is at a hole; one on no face is.
+    #[inline]
+    pub(crate) fn is_boundary_vertex(&self, vertex: usize) -> bool {
+        let first = self.vertex_halfedge[vertex];
+        first == NONE || self.corner(first ^ 1) == NONE
+    }
+
+    /// Writes the half-edges that leave `vertex`, counterclockwise; the face left of one lies before the
+    /// next. Returns whether they close: at a hole they do not, and the last has no face.
+    #[inline]
+    pub(crate) fn spokes(&self, vertex: usize, spokes: &mut Vec<u32>) -> bool {
+        spokes.clear();
+        let first = self.vertex_halfedge[vertex];
+        if first == NONE {
+            return false;
+        }
+        let mut spoke = first;
+        loop {
+            spokes.push(spoke);
+            let corner = self.corner(spoke);
+            if corner == NONE {
+                return false;
+            }
+            spoke = self.corner_halfedge[self.prev(corner) as usize] ^ 1;
+            if spoke == first {
+                return true;
+            }
+        }
+    }
+
+    /// The faces listed, as a topology of their own, with the vertices and edges of this one that its
+    /// vertices and edges are; edges to other faces become rims. Where the faces hang together at a
+    /// vertex only, one of the fans there is its fan.
+    pub(crate) fn part(&self, faces: &[u32]) -> (Topology, Vec<u32>, Vec<u32>) {
+        let (mut vertices, mut edges) = (Numbers::default(), Numbers::default());
+        let (mut corner_halfedge, mut starts, mut corner_face) = (Vec::new(), vec![0], Vec::new());
+        for (&face, f) in faces.iter().zip(0..) {
+            for c in self.corners(face) {
+                let h = self.corner_halfedge[c as usize];
+                corner_halfedge.push(2 * edges.of(h >> 1) + h % 2);
+                corner_face.push(f);
+            }
+            starts.push(corner_halfedge.len() as u32);
+        }
+        let mut halfedge_corner = vec![NONE; 2 * edges.ids.len()];
+        for (&h, c) in corner_halfedge.iter().zip(0..) {
+            halfedge_corner[h as usize] = c;
+        }
+        let ends = edges.ids.iter().flat_map(|&e| [2 * e, 2 * e + 1]);
+        let from: Vec<u32> = ends.map(|h| vertices.of(self.from[h as usize])).collect();
+        let mut vertex_halfedge = vec![NONE; vertices.ids.len()];
+        for (h, &v) in (0..).zip(&from) {
+            // Beside a rim the first one has it on its right.
+            let at_rim = halfedge_corner[h as usize ^ 1] == NONE;
+            if at_rim || vertex_halfedge[v as usize] == NONE && halfedge_corner[h as usize] != NONE
+            {
+                vertex_halfedge[v as usize] = h;
+            }
+        }
+        let degree = starts[1];
+        let uniform = starts.windows(2).all(|pair| pair[1] - pair[0] == degree);
+        let starts =
+            if uniform { Starts::Every(degree) } else { Starts::At { starts, corner_face } };
+        let part = Topology { starts, corner_halfedge, halfedge_corner, from, vertex_halfedge };
+        (part, vertices.ids, edges.ids)
+    }
+}
+
+/// Numbers from 0 in the order in which ids are first asked for.
+#[derive(Default)]
+struct Numbers {
+    ids: Vec<u32>,
+    /// Only looked up, so its order reaches nobody.
+    number: HashMap<u32, u32>,
+}
+
+impl Numbers {
+    fn of(&mut self, id: u32) -> u32 {
+        let Numbers { ids, number } = self;
+        *number.entry(id).or_insert_with(|| {
+            ids.push(id);
+            ids.len() as u32 - 1
+        })
+    }
+}

@@ -1,0 +1,93 @@
+//! Adaptive refinement: no cracks, the same surface as everywhere refined.
+
+use dgp_mesh::{DVec3, Mesh, Progress, VertexId, shapes, topology::euler_characteristic};
+use dgp_subdiv::{
+    Error, LoopWeights, RefinementOptions, RefinementPlan, SHARP, Scheme, Sharpness,
+    refine_adaptively,
+};
+
+const LOOP: Scheme = Scheme::Loop(LoopWeights::Original);
+
+fn cages() -> Vec<(Mesh, Scheme)> {
+    vec![
+        (shapes::cube(), Scheme::CatmullClark),
+        (shapes::dodecahedron(), Scheme::CatmullClark),
+        (shapes::quad_grid(4, 3).unwrap(), Scheme::CatmullClark),
+        (shapes::tetrahedron(), LOOP),
+        (shapes::icosahedron(), LOOP),
+        (shapes::torus(2.0, 1.0, 6, 5).unwrap(), LOOP),
+        (shapes::grid(3, 3).unwrap(), LOOP),
+    ]
+}
+
+fn creased(mesh: &Mesh) -> Sharpness {
+    let mut sharpness = Sharpness::new();
+    for e in mesh.edges().step_by(3) {
+        sharpness.set_edge(e, if e.index() % 2 == 0 { 1.4 } else { SHARP });
+    }
+    sharpness
+}
+
+fn options(scheme: Scheme, levels: usize) -> RefinementOptions {
+    RefinementOptions { scheme, levels, ..RefinementOptions::default() }
+}
+
+#[test]
+fn split_everywhere_is_the_limit_of_the_refined_mesh() {
+    for (mesh, scheme) in cages() {
+        for sharpness in [Sharpness::new(), creased(&mesh)] {
+            let options = options(scheme, 3);
+            let all = refine_adaptively(&mesh, &sharpness, &options, |_, _| true, Progress::NONE)
+                .unwrap();
+            let plan = RefinementPlan::new(&mesh, &sharpness, &options, Progress::NONE).unwrap();
+            let limits = plan.limit(&plan.refine(mesh.positions().values()).unwrap()).unwrap();
+            assert_eq!(all.face_count() as u64, plan.counts(3).faces);
+            // Faces come in the same order, corner by corner.
+            let (faces, expected) = (all.to_faces(), plan.faces(3));
+            for ((f, face), (_, other)) in faces.iter().zip(expected.iter()) {
+                for (v, w) in face.iter().zip(other) {
+                    let distance = all.position(*v).distance(limits[w.index()]);
+                    assert!(distance < 1e-13, "{scheme:?} {f} {distance}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn levels_meet_without_cracks() {
+    for (mesh, scheme) in cages() {
+        for sharpness in [Sharpness::new(), creased(&mesh)] {
+            // Towards one corner, so that all levels are side by side.
+            let target = mesh.position(VertexId::new(0)) * 0.7;
+            let near = |level: usize, corners: &[DVec3]| {
+                let size = 2.0 * 0.6_f64.powi(level as i32);
+                corners.iter().any(|p| p.distance(target) < size)
+            };
+            let options = options(scheme, 5);
+            let refined =
+                refine_adaptively(&mesh, &sharpness, &options, near, Progress::NONE).unwrap();
+            // An open side would add a hole; a cage with a rim has one hole still.
+            assert_eq!(euler_characteristic(&refined), euler_characteristic(&mesh), "{scheme:?}");
+            let is_closed = |m: &Mesh| m.vertices().all(|v| !m.is_boundary_vertex(v));
+            assert_eq!(is_closed(&refined), is_closed(&mesh));
+            let all = 4_usize.pow(5) * mesh.face_count();
+            assert!(refined.face_count() > 4 * mesh.face_count() && refined.face_count() < all);
+            let regular = if scheme == LOOP { 3 } else { 4 };
+            let many = refined.faces().filter(|&f| refined.degree(f) > regular).count();
+            assert!(many > 0, "faces of different levels meet");
+        }
+    }
+}
+
+#[test]
+fn only_schemes_with_a_limit_are_taken_and_memory_is_kept_to() {
+    let mesh = shapes::cube();
+    let refuse = |options: RefinementOptions| {
+        let all = |_: usize, _: &[DVec3]| true;
+        refine_adaptively(&mesh, &Sharpness::new(), &options, all, Progress::NONE).unwrap_err()
+    };
+    assert!(matches!(refuse(options(Scheme::DooSabin, 2)), Error::NoLimit { .. }));
+    let little = RefinementOptions { memory_limit: 1 << 20, ..options(Scheme::CatmullClark, 40) };
+    assert!(matches!(refuse(little), Error::TooLarge { level, .. } if level < 10));
+}
