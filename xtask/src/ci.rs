@@ -1,7 +1,7 @@
 //! Everything that must hold before a change lands, in one run.
 
 use std::{
-    fs,
+    env, fs,
     process::Command,
     time::{Duration, Instant},
 };
@@ -28,11 +28,21 @@ pub(crate) fn run() -> Outcome<()> {
         let mut command = cargo(&["doc", "--workspace", "--no-deps"]);
         shell::run(command.env("RUSTDOCFLAGS", "-D warnings"))
     })?;
+    steps.step("room", make_room)?;
     steps.step("demo", demo)?;
     steps.step("golden comparisons", || golden::run(&[]))?;
     steps.step("benchmarks run", || bench::run(&["--quick".into()]))?;
     steps.print();
     Ok(())
+}
+
+/// On a machine that is there for this run only, takes away what the steps before have built without
+/// optimization: the machine may have little disk.
+fn make_room() -> Outcome<()> {
+    match env::var_os("CI") {
+        Some(_) => shell::run(&mut cargo(&["clean", "--profile", "dev"])),
+        None => Ok(()),
+    }
 }
 
 /// The README's command for running, from the workspace's root but into a folder that is then removed.
@@ -64,6 +74,9 @@ impl Steps {
 
     fn cargo(&mut self, name: &str, arguments: &[&str]) -> Outcome<()> {
         let mut command: Command = cargo(arguments);
+        // A machine that builds once has no use for what the next build would reuse, nor for line numbers;
+        // they are half of what is written.
+        command.env("CARGO_INCREMENTAL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
         self.step(name, || shell::run(&mut command))
     }
 

@@ -8,7 +8,7 @@ use dgp_sparse::{
     elimination_order,
 };
 
-#[path = "../tests/common/surfaces.rs"]
+#[path = "../tests/solvers/common/surfaces.rs"]
 mod surfaces;
 
 /// The spheres have 10,242, 163,842 and 655,362 vertices.

@@ -3,7 +3,7 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use dgp_sparse::{EigenOptions, Mass, Progress, eigenpairs};
 
-#[path = "../tests/common/elements.rs"]
+#[path = "../tests/solvers/common/elements.rs"]
 #[allow(dead_code, reason = "the tests use more of it")]
 mod elements;
 use elements::{elements, icosphere};

@@ -7,8 +7,7 @@ use dgp_sparse::{
     Preconditioner, Progress, SparseMatrix, conjugate_gradients,
 };
 
-mod common;
-use common::{
+use crate::common::{
     elements::{elements, icosphere},
     grid, random,
 };

@@ -7,11 +7,8 @@ use dgp_sparse::{
 use proptest::prelude::*;
 use std::{ops::ControlFlow, sync::atomic};
 
-mod common;
-#[path = "common/surfaces.rs"]
-mod surfaces;
-use common::{grid, random};
-use surfaces::{gyroid, sphere, system};
+use crate::common::{grid, random};
+use crate::common::surfaces::{gyroid, sphere, system};
 
 /// Entries of the factor.
 fn fill(matrix: &SparseMatrix, ordering: Ordering) -> f64 {

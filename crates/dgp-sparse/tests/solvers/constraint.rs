@@ -5,8 +5,7 @@ use dgp_sparse::{
 };
 use proptest::prelude::*;
 
-mod common;
-use common::{dense_solve, grid, random};
+use crate::common::{dense_solve, grid, random};
 
 fn options() -> CholeskyOptions {
     CholeskyOptions::default()

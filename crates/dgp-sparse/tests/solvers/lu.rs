@@ -3,8 +3,7 @@
 use dgp_sparse::{Error, LeastSquaresMethod, Lu, Progress, SparseMatrix, least_squares};
 use proptest::prelude::*;
 
-mod common;
-use common::{grid, random};
+use crate::common::{grid, random};
 
 fn factored(matrix: &SparseMatrix) -> Result<Lu, Error> {
     Lu::new(matrix, Progress::NONE)

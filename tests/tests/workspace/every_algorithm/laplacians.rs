@@ -29,7 +29,7 @@ use dgp_mesh::{
 };
 use dgp_sparse::{EigenOptions, SparseMatrix};
 
-use crate::{
+use super::{
     outcome::Outcome,
     table::{Algorithm, changed, mesh, set},
 };

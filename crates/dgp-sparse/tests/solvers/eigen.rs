@@ -7,8 +7,7 @@ use dgp_sparse::{
 };
 use proptest::prelude::*;
 
-mod common;
-use common::{
+use crate::common::{
     elements::{elements, flat_torus, icosphere},
     random,
 };

@@ -1,7 +1,7 @@
 //! Matrices to try things on.
-#![allow(dead_code, reason = "not every test file uses all")]
 
 pub(crate) mod elements;
+pub(crate) mod surfaces;
 
 use dgp_sparse::SparseMatrix;
 

@@ -18,7 +18,7 @@ use dgp_mesh::{
 };
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
-use crate::{inputs::Input, laplacians::laplacians, outcome::Outcome};
+use super::{inputs::Input, laplacians::laplacians, outcome::Outcome};
 
 /// A name and what to run.
 pub(crate) struct Algorithm {

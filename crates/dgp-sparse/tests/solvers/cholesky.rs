@@ -6,8 +6,7 @@ use dgp_sparse::{
 use proptest::prelude::*;
 use std::{ops::ControlFlow, sync::Arc};
 
-mod common;
-use common::{dense_solve, grid, random};
+use crate::common::{dense_solve, grid, random};
 
 fn with(ordering: Ordering) -> CholeskyOptions {
     CholeskyOptions { ordering }
