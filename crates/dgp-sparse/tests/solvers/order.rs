@@ -7,8 +7,8 @@ use dgp_sparse::{
 use proptest::prelude::*;
 use std::{ops::ControlFlow, sync::atomic};
 
-use crate::common::{grid, random};
 use crate::common::surfaces::{gyroid, sphere, system};
+use crate::common::{grid, random};
 
 /// Entries of the factor.
 fn fill(matrix: &SparseMatrix, ordering: Ordering) -> f64 {
