@@ -18,12 +18,23 @@ pub const BLOCK: usize = 4096;
 
 /// The value `f(id)` for each of `len` elements.
 pub fn map<I: Id, T: Send>(len: usize, f: impl Fn(I) -> T + Sync + Send) -> IdMap<I, T> {
+    map_in(Vec::new(), len, f)
+}
+
+/// [`map()`] in memory that was made before, empty and with room for `len` elements.
+pub(crate) fn map_in<I: Id, T: Send>(
+    mut room: Vec<T>,
+    len: usize,
+    f: impl Fn(I) -> T + Sync + Send,
+) -> IdMap<I, T> {
     #[cfg(feature = "rayon")]
     if len > BLOCK {
         let values = (0..len).into_par_iter().with_min_len(BLOCK / 4);
-        return values.map(|i| f(I::from_index(i))).collect::<Vec<T>>().into();
+        values.map(|i| f(I::from_index(i))).collect_into_vec(&mut room);
+        return room.into();
     }
-    IdMap::from_fn(len, f)
+    room.extend((0..len).map(|i| f(I::from_index(i))));
+    room.into()
 }
 
 /// The results of `f` on consecutive ranges of `0..len`, each of `block` elements but the last.
@@ -83,6 +94,15 @@ pub fn join<A: Send, B: Send>(
     return rayon::join(a, b);
     #[cfg(not(feature = "rayon"))]
     (a(), b())
+}
+
+/// How often work is halved so that each thread has a part, where every part reads all of the input: twice
+/// is the most.
+pub(crate) fn halvings() -> u32 {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads().ilog2().min(2);
+    #[cfg(not(feature = "rayon"))]
+    0
 }
 
 /// Values at every element.

@@ -2,14 +2,16 @@
 //!
 //! Each corner of a face starts a directed side a → b. Sides are put into buckets by their smaller
 //! vertex (a counting sort), those that lead to the larger vertex first. Both parts of each small bucket
-//! are sorted by the larger vertex, and side by side they give the two sides of each edge. No hashing; arrays are written in order and read where faces that are
-//! close in the list are close on the surface.
+//! are sorted by the larger vertex, and side by side they give the two sides of each edge. No hashing;
+//! arrays are written in order and read where faces that are close in the list are close on the surface.
+//! Each thread has the sides of its own vertices, which it picks from all faces.
 
-use std::{cmp::Ordering, ops::Range};
+use std::ops::Range;
 
+use super::sides::{Side, fill, for_each_side, middles, sort, starts};
 use crate::{
-    Connectivity, CornerId, FaceId, FaceList, HalfedgeId, HalfedgeMap, NotManifold, VertexId,
-    VertexMap, parallel,
+    Connectivity, CornerId, FaceId, FaceList, HalfedgeId, NotManifold, VertexId, VertexMap,
+    parallel,
 };
 
 /// The number of the half-edge that starts at each corner, in the order of [`FaceList::corners`].
@@ -23,10 +25,9 @@ pub(crate) fn assemble(
     if faces.uniform_degree() != Some(3) {
         check_degrees(faces)?;
     }
-    let Edges { to, corner, corner_halfedges, vertex_halfedge, holes } =
-        Edges::new(vertex_count, faces)?;
-    let mut connectivity = link_faces(faces, corner, &corner_halfedges);
-    connectivity.to = to;
+    let mut vertex_halfedge = VertexMap::filled(vertex_count, None);
+    let (corner, holes) = number_edges(faces, &mut vertex_halfedge)?;
+    let (mut connectivity, corner_halfedges) = link_faces(faces, corner);
     connectivity.vertex_halfedge = vertex_halfedge;
     link_holes(&mut connectivity, &holes)?;
     check_fans(&connectivity)?;
@@ -60,357 +61,294 @@ fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
         .map_or(Ok(()), |face| Err(NotManifold::DegenerateFace { face }))
 }
 
-/// A side of a face in the bucket of its smaller vertex: its corner, with the direction in the highest
-/// bit (0 if the side leads from the smaller to the larger), and the larger vertex.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Side([u32; 2]);
-
-impl Side {
-    #[inline]
-    fn new(corner: usize, a: VertexId, b: VertexId) -> Self {
-        let (smaller, larger) = (a.index().min(b.index()), a.index().max(b.index()));
-        Side([u32::from(a.index() != smaller) << 31 | corner as u32, larger as u32])
-    }
-
-    /// By the larger vertex, then by direction.
-    #[inline]
-    fn key(self) -> u64 {
-        u64::from(self.0[1]) << 32 | u64::from(self.0[0])
-    }
-
-    #[inline]
-    pub(crate) fn larger(self) -> usize {
-        self.0[1] as usize
-    }
-
-    #[inline]
-    pub(crate) fn is_forward(self) -> bool {
-        self.0[0] >> 31 == 0
-    }
-
-    #[inline]
-    pub(crate) fn corner(self) -> usize {
-        self.0[0] as usize & (FaceList::MAX_CORNERS - 1)
-    }
-}
-
-impl Ord for Side {
-    #[inline]
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.key().cmp(&other.key())
-    }
-}
-
-impl PartialOrd for Side {
-    #[inline]
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// The sides of all faces in sorted buckets by smaller vertex. That of v is `[v]..[v + 1]` of the
-/// second list.
-pub(crate) fn sorted_sides(vertex_count: usize, faces: &FaceList) -> (Vec<Side>, Vec<u32>) {
-    let buckets = Buckets::new(vertex_count, faces);
-    let (mut sides, starts, _) = buckets.fill(faces);
-    sort_buckets(&mut sides, &starts, 0..vertex_count);
-    (sides, starts)
-}
-
-/// Where the sides of each vertex to larger ones have their place.
-struct Buckets {
-    /// The bucket of v is at `[v]..[v + 1]`.
-    starts: Vec<u32>,
-}
-
-impl Buckets {
-    fn new(vertex_count: usize, faces: &FaceList) -> Self {
-        let mut starts = vec![0_u32; vertex_count + 1];
-        for_each_side(faces, |_, a, b| starts[a.min(b).index() + 1] += 1);
-        for v in 1..starts.len() {
-            starts[v] += starts[v - 1];
+/// Numbers the edges by their smaller vertex, then by their larger one. Returns the corners where the two
+/// half-edges of each edge start, and the half-edges without a face, whose corner is one past the last.
+/// Each vertex that has faces gets a half-edge that leaves it.
+fn number_edges(
+    faces: &FaceList,
+    vertex_halfedge: &mut VertexMap<Option<HalfedgeId>>,
+) -> Result<(Vec<u32>, Vec<HalfedgeId>), NotManifold> {
+    // All that is large is made here: what a thread frees stays with that thread.
+    let starts = starts(vertex_halfedge.len(), faces);
+    let mut middles = middles(&starts);
+    let mut sides = vec![[0; 2]; faces.corners().len()];
+    let part = Part {
+        vertices: 0..vertex_halfedge.len(),
+        middles: &mut middles,
+        halfedges: vertex_halfedge.values_mut(),
+        sides: &mut sides,
+    };
+    match part.number(faces, &starts, parallel::halvings()) {
+        Ok(Edges { count, holes, peaks }) => {
+            for (v, h) in peaks {
+                vertex_halfedge[v] = Some(h);
+            }
+            sides.truncate(count);
+            sides.shrink_to_fit();
+            Ok((sides.into_flattened(), holes))
         }
-        Buckets { starts }
-    }
-
-    /// The sides in their buckets, where these begin, and where the forward sides of each end and the
-    /// others begin.
-    fn fill(self, faces: &FaceList) -> (Vec<Side>, Vec<u32>, Vec<[u32; 2]>) {
-        let Buckets { starts } = self;
-        // Each bucket fills from both ends.
-        let mut middles: Vec<_> = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
-        let mut sides = vec![[0_u32; 2]; faces.corners().len()];
-        for_each_side(faces, |corner, a, b| {
-            let backward = usize::from(a > b);
-            let end = &mut middles[a.min(b).index()][backward];
-            let place = *end - backward as u32;
-            *end = place + 1 - backward as u32;
-            sides[place as usize] = Side::new(corner, a, b).0;
-        });
-        // Zeros come from the system for nothing, sides would be written twice. This stays in place.
-        (sides.into_iter().map(Side).collect(), starts, middles)
-    }
-}
-
-/// Calls `f(corner, a, b)` for each side a → b of each face, in order.
-#[inline]
-fn for_each_side(faces: &FaceList, mut f: impl FnMut(usize, VertexId, VertexId)) {
-    if faces.uniform_degree() == Some(3) {
-        for (t, &[a, b, c]) in faces.corners().as_chunks::<3>().0.iter().enumerate() {
-            f(3 * t, a, b);
-            f(3 * t + 1, b, c);
-            f(3 * t + 2, c, a);
+        Err([smaller, larger]) => {
+            check_degrees(faces)?;
+            Err(obstacle(smaller, larger, faces))
         }
-        return;
-    }
-    let mut corner = 0;
-    for (_, face) in faces.iter() {
-        let mut a = face[face.len() - 1];
-        let last = corner + face.len() - 1;
-        for (k, &b) in face.iter().enumerate() {
-            f(if k == 0 { last } else { corner + k - 1 }, a, b);
-            a = b;
-        }
-        corner += face.len();
     }
 }
 
-/// Sorts the buckets of these vertices, whose sides begin at `sides[0]`; halves in parallel.
-fn sort_buckets(sides: &mut [Side], starts: &[u32], vertices: Range<usize>) {
-    if vertices.len() > 4 * parallel::BLOCK {
-        let middle = vertices.start.midpoint(vertices.end);
-        let (low, high) = sides.split_at_mut((starts[middle] - starts[vertices.start]) as usize);
-        parallel::join(
-            || sort_buckets(low, starts, vertices.start..middle),
-            || sort_buckets(high, starts, middle..vertices.end),
-        );
-        return;
-    }
-    let mut rest = sides;
-    for v in vertices {
-        let (bucket, others) = rest.split_at_mut((starts[v + 1] - starts[v]) as usize);
-        sort(bucket);
-        rest = others;
-    }
+/// Vertices and what is known of them.
+struct Part<'a> {
+    vertices: Range<usize>,
+    /// Where the buckets begin and end.
+    middles: &'a mut [[u32; 2]],
+    /// A half-edge that leaves each, to be found.
+    halfedges: &'a mut [Option<HalfedgeId>],
+    /// Room for the sides to larger vertices. In the end, the corners where the half-edges of each edge start.
+    sides: &'a mut [[u32; 2]],
 }
 
-/// Sorts a few sides. Most parts of buckets have up to six, in no order, where branches on comparisons
-/// are guesses; these go through networks of minima and maxima instead (Knuth, The Art of Computer
-/// Programming 3, section 5.3.4).
-#[inline]
-fn sort(sides: &mut [Side]) {
-    /// Puts the pairs in order, one after the other.
-    macro_rules! order {
-        ($($a:ident $b:ident),+) => {
-            { $((*$a, *$b) = ((*$a).min(*$b), (*$a).max(*$b));)+ }
-        };
-    }
-    match sides {
-        [] | [_] => {}
-        [a, b] => order!(a b),
-        [a, b, c] => order!(a b, b c, a b),
-        [a, b, c, d] => order!(a b, c d, a c, b d, b c),
-        [a, b, c, d, e] => order!(a d, b e, a c, b d, a b, c e, b c, d e, c d),
-        [a, b, c, d, e, f] => {
-            order!(a f, b d, c e, b c, d e, a d, c f, a b, c d, e f, b c, d e);
-        }
-        _ => sides.sort_unstable(),
-    }
-}
-
-/// The numbered edges, and what is known of them before the faces are linked.
+/// The edges of some vertices to larger ones, numbered from 0.
 struct Edges {
-    to: HalfedgeMap<VertexId>,
-    /// The corner each half-edge starts at; one past the last corner where it has no face.
-    corner: Vec<u32>,
-    corner_halfedges: CornerHalfedges,
-    vertex_halfedge: VertexMap<Option<HalfedgeId>>,
+    count: usize,
     /// The half-edges without a face.
     holes: Vec<HalfedgeId>,
+    /// Vertices that have edges only to smaller ones, and a half-edge that leaves them; the last counts.
+    peaks: Vec<(VertexId, HalfedgeId)>,
+}
+
+impl Part<'_> {
+    /// Numbers the edges. If sides cannot be those of one edge, the error is the first such edge; both ends
+    /// are the same where a triangle names a vertex twice.
+    fn number(
+        mut self,
+        faces: &FaceList,
+        starts: &[u32],
+        halvings: u32,
+    ) -> Result<Edges, [VertexId; 2]> {
+        if halvings > 0 && self.sides.len() > parallel::BLOCK {
+            let (low, high) = self.halves(starts);
+            let (middle, vertex) = (low.sides.len(), low.halfedges.len());
+            let (edges, later) = parallel::join(
+                || low.number(faces, starts, halvings - 1),
+                || high.number(faces, starts, halvings - 1),
+            );
+            let (edges, later) = (edges?, later?);
+            self.sides.copy_within(middle..middle + later.count, edges.count);
+            return Ok(edges.followed_by(later, &mut self.halfedges[vertex..]));
+        }
+        let Part { vertices, middles, halfedges, sides } = self;
+        fill(faces, starts, middles, vertices.clone(), sides);
+        let first = starts[vertices.start];
+        let mut numbering = Numbering {
+            starts,
+            none: faces.corners().len() as u32,
+            corners: sides,
+            edges: Edges { count: 0, holes: Vec::new(), peaks: Vec::new() },
+        };
+        let mut bucket = Vec::with_capacity(64);
+        for ((v, h), middle) in vertices.zip(halfedges).zip(middles) {
+            let range = (starts[v] - first) as usize..(starts[v + 1] - first) as usize;
+            if range.is_empty() {
+                continue;
+            }
+            bucket.clear();
+            bucket.extend(numbering.corners[range].iter().map(|&side| Side(side)));
+            let (forward, backward) = bucket.split_at_mut((middle[0] - starts[v]) as usize);
+            sort(forward);
+            sort(backward);
+            numbering.add(VertexId::new(v), forward, backward)?;
+            // The last one; each vertex that has a bucket starts with an edge of its own.
+            *h = Some(HalfedgeId::new(2 * (numbering.edges.count - 1)));
+        }
+        Ok(numbering.edges)
+    }
+
+    /// Two parts with about as many sides.
+    fn halves(&mut self, starts: &[u32]) -> (Part<'_>, Part<'_>) {
+        let Part { vertices, middles, halfedges, sides } = self;
+        let first = starts[vertices.start];
+        let half = first + sides.len() as u32 / 2;
+        let count = starts[vertices.clone()].partition_point(|&start| start < half);
+        let middle = vertices.start + count;
+        let (middles, other_middles) = middles.split_at_mut(count);
+        let (halfedges, other_halfedges) = halfedges.split_at_mut(count);
+        let (sides, other_sides) = sides.split_at_mut((starts[middle] - first) as usize);
+        (
+            Part { vertices: vertices.start..middle, middles, halfedges, sides },
+            Part {
+                vertices: middle..vertices.end,
+                middles: other_middles,
+                halfedges: other_halfedges,
+                sides: other_sides,
+            },
+        )
+    }
 }
 
 impl Edges {
-    fn new(vertex_count: usize, faces: &FaceList) -> Result<Self, NotManifold> {
-        let buckets = Buckets::new(vertex_count, faces);
-        let count = faces.corners().len();
-        // The sides come last: what they leave is where the allocator can use it again.
-        let mut numbering = Numbering {
-            corner_halfedges: vec![0; count],
-            none: count as u32,
-            // Room for an eighth of the edges on the boundary; a patchwork grows.
-            to: Vec::with_capacity(count / 2 + count / 16),
-            vertex_halfedge: VertexMap::filled(vertex_count, None),
-            holes: Vec::new(),
-        };
-        let mut bucket = Vec::with_capacity(64);
-        let (mut sides, starts, middles) = buckets.fill(faces);
-        for (v, (ends, middle)) in starts.windows(2).zip(&middles).enumerate() {
-            bucket.clear();
-            bucket.extend_from_slice(&sides[ends[0] as usize..ends[1] as usize]);
-            let (forward, backward) = bucket.split_at_mut((middle[0] - ends[0]) as usize);
-            sort(forward);
-            sort(backward);
-            let smaller = VertexId::new(v);
-            // There are at least as many sides as edges: what is read makes room for what is written.
-            if let Err(larger) = numbering.add(smaller, forward, backward, &mut sides) {
-                check_degrees(faces)?;
-                bucket.sort_unstable();
-                let first = bucket.partition_point(|side| side.larger() < larger);
-                return Err(obstacle(smaller, &bucket[first..], faces));
-            }
+    /// Appends the edges of the next vertices, to which these half-edges belong.
+    fn followed_by(mut self, later: Edges, halfedges: &mut [Option<HalfedgeId>]) -> Self {
+        let count = 2 * self.count;
+        let moved = |h: HalfedgeId| HalfedgeId::new(h.index() + count);
+        self.count += later.count;
+        self.holes.extend(later.holes.into_iter().map(moved));
+        self.peaks.extend(later.peaks.into_iter().map(|(v, h)| (v, moved(h))));
+        for h in halfedges.iter_mut().flatten() {
+            *h = moved(*h);
         }
-        let Numbering { to, corner_halfedges, vertex_halfedge, holes, .. } = numbering;
-        sides.truncate(to.len());
-        sides.shrink_to_fit();
-        let corner: Vec<[u32; 2]> = sides.into_iter().map(|pair| pair.0).collect();
-        let (to, corner) = (to.into_flattened().into(), corner.into_flattened());
-        Ok(Edges { to, corner, corner_halfedges, vertex_halfedge, holes })
+        self
     }
 }
 
-/// The edges numbered so far.
-struct Numbering {
+/// Edges while they are numbered.
+struct Numbering<'a> {
+    starts: &'a [u32],
     none: u32,
-    to: Vec<[VertexId; 2]>,
-    corner_halfedges: CornerHalfedges,
-    vertex_halfedge: VertexMap<Option<HalfedgeId>>,
-    holes: Vec<HalfedgeId>,
+    /// The corners of the edges numbered so far, and the sides of those to come: there are at least as many
+    /// sides as edges, so what is read makes room for what is written.
+    corners: &'a mut [[u32; 2]],
+    edges: Edges,
 }
 
-impl Numbering {
-    /// Numbers the edges of a vertex to larger ones, given their sorted sides, and writes the corners of
-    /// edge e to `corners[e]`. If sides cannot be those of one edge, the error is its larger vertex; that is
-    /// the smaller one too where a triangle names a vertex twice.
+impl Numbering<'_> {
+    /// Numbers the edges of a vertex to larger ones, given their sorted sides.
     #[inline]
     fn add(
         &mut self,
         smaller: VertexId,
         mut forward: &[Side],
         mut backward: &[Side],
-        corners: &mut [Side],
-    ) -> Result<(), usize> {
-        if forward.is_empty() && backward.is_empty() {
-            return Ok(());
-        }
+    ) -> Result<(), [VertexId; 2]> {
         let mut previous = None;
         loop {
             let (one, other) = (forward.first(), backward.first());
             let larger = match (one, other) {
-                (None, None) => break,
+                (None, None) => return Ok(()),
                 (Some(side), None) | (None, Some(side)) => side.larger(),
                 (Some(one), Some(other)) => one.larger().min(other.larger()),
             };
             if previous == Some(larger) || larger == smaller.index() {
-                return Err(larger);
+                return Err([smaller, VertexId::new(larger)]);
             }
             previous = Some(larger);
             let one = one.filter(|side| side.larger() == larger);
             let other = other.filter(|side| side.larger() == larger);
             forward = &forward[usize::from(one.is_some())..];
             backward = &backward[usize::from(other.is_some())..];
-            let ends = [smaller, VertexId::new(larger)];
-            let edge = self.to.len();
-            corners[edge] = Side(self.push(ends, one.copied(), other.copied()));
+            self.push(larger, [one, other]);
         }
-        // The last one; each vertex that has a bucket starts with an edge of its own.
-        self.vertex_halfedge[smaller] = Some(HalfedgeId::new(2 * (self.to.len() - 1)));
-        Ok(())
     }
 
-    /// Numbers the edge with these sides, of which there is at least one, and returns their corners.
+    /// Numbers the edge with these sides, of which there is at least one.
     #[inline]
-    fn push(
-        &mut self,
-        [smaller, larger]: [VertexId; 2],
-        one: Option<Side>,
-        other: Option<Side>,
-    ) -> [u32; 2] {
-        let halfedge = HalfedgeId::new(2 * self.to.len());
-        let mut corner = |h: HalfedgeId, side: Option<Side>| {
-            if let Some(side) = side {
-                self.corner_halfedges[side.corner()] = h.index() as u32;
-                return side.corner() as u32;
+    fn push(&mut self, larger: usize, sides: [Option<&Side>; 2]) {
+        let halfedge = HalfedgeId::new(2 * self.edges.count);
+        let mut corner = |h: HalfedgeId, side: Option<&Side>| match side {
+            Some(side) => side.corner() as u32,
+            None => {
+                self.edges.holes.push(h);
+                self.none
             }
-            self.holes.push(h);
-            self.none
         };
-        let corners = [corner(halfedge, one), corner(halfedge.twin(), other)];
-        self.to.push([larger, smaller]);
-        // Holds only if the bucket of the larger vertex, which comes later, is empty.
-        self.vertex_halfedge[larger] = Some(halfedge.twin());
-        corners
+        let corners = [corner(halfedge, sides[0]), corner(halfedge.twin(), sides[1])];
+        if self.starts[larger] == self.starts[larger + 1] {
+            self.edges.peaks.push((VertexId::new(larger), halfedge.twin()));
+        }
+        self.corners[self.edges.count] = corners;
+        self.edges.count += 1;
     }
 }
 
-/// Why the first sides of this bucket cannot be the two half-edges of one edge.
-fn obstacle(smaller: VertexId, bucket: &[Side], faces: &FaceList) -> NotManifold {
-    let vertices = [smaller, VertexId::new(bucket[0].larger())];
-    match bucket.iter().take_while(|side| side.larger() == bucket[0].larger()).count() {
-        2 => {
-            let mut faces = [0, 1].map(|k| faces.corner_face(CornerId::new(bucket[k].corner())));
+/// Why the sides between these vertices cannot be the two half-edges of one edge.
+fn obstacle(smaller: VertexId, larger: VertexId, faces: &FaceList) -> NotManifold {
+    let mut sides = Vec::new();
+    for_each_side(faces, |corner, a, b| {
+        if (a.min(b), a.max(b)) == (smaller, larger) {
+            sides.push(CornerId::new(corner));
+        }
+    });
+    let vertices = [smaller, larger];
+    match sides[..] {
+        [one, other] => {
+            let mut faces = [one, other].map(|corner| faces.corner_face(corner));
             faces.sort_unstable();
             NotManifold::Misoriented { vertices, faces }
         }
-        count => NotManifold::NonManifoldEdge { vertices, faces: count },
+        _ => NotManifold::NonManifoldEdge { vertices, faces: sides.len() },
     }
 }
 
-/// Prev and face of the half-edges that have a face; itself and none for the others. And a half-edge of
-/// each face.
-fn link_faces(faces: &FaceList, corner: Vec<u32>, halfedges: &[u32]) -> Connectivity {
+/// Links the half-edges that start at these corners, and says which starts at each corner. Those without a
+/// face precede themselves for now.
+fn link_faces(faces: &FaceList, corner: Vec<u32>) -> (Connectivity, CornerHalfedges) {
     if faces.uniform_degree() == Some(3) {
         return link(
+            faces,
             corner,
-            halfedges,
             |c| (c / 3) as usize,
             |c| if c % 3 == 0 { c + 2 } else { c - 1 },
-            || halfedges.iter().step_by(3).map(|&h| HalfedgeId::new(h as usize)).collect(),
+            |c| if c % 3 == 2 { c - 2 } else { c + 1 },
         );
     }
-    let mut corner_faces = Vec::with_capacity(halfedges.len());
+    let mut corner_faces = Vec::with_capacity(faces.corners().len());
     for (f, face) in faces.iter() {
         corner_faces.resize(corner_faces.len() + face.len(), f);
     }
-    let start = |f: FaceId| faces.face_start(f).index();
     let face = |c: u32| corner_faces[c as usize];
+    let start = |c: u32| faces.face_start(face(c)).index() as u32;
+    let end = |c: u32| start(c) + faces.degree(face(c)) as u32;
     link(
+        faces,
         corner,
-        halfedges,
         |c| face(c).index(),
-        |c| {
-            let f = face(c);
-            let start = start(f);
-            if c as usize == start { (start + faces.degree(f) - 1) as u32 } else { c - 1 }
-        },
-        || faces.iter().map(|(f, _)| HalfedgeId::new(halfedges[start(f)] as usize)).collect(),
+        |c| if c == start(c) { end(c) - 1 } else { c - 1 },
+        |c| if c + 1 == end(c) { start(c) } else { c + 1 },
     )
 }
 
-/// Each array is written once, in order: pages that are new cost more than what is written on them.
+/// Each array is written once, in order where that can be: pages that are new cost more than what is
+/// written on them.
 #[inline]
 fn link(
+    faces: &FaceList,
     corner: Vec<u32>,
-    halfedges: &[u32],
     face: impl Fn(u32) -> usize + Sync,
     preceding: impl Fn(u32) -> u32 + Sync + Send,
-    first: impl FnOnce() -> Vec<HalfedgeId>,
-) -> Connectivity {
-    let none = halfedges.len() as u32;
+    following: impl Fn(u32) -> u32 + Sync + Send,
+) -> (Connectivity, CornerHalfedges) {
+    let vertices = faces.corners();
+    let none = vertices.len() as u32;
+    // What stays is made before what is freed, which is then given back.
+    let (to, prev) = (Vec::with_capacity(corner.len()), Vec::with_capacity(corner.len()));
+    let face_halfedge = Vec::with_capacity(faces.len());
+    let mut halfedges = vec![0; vertices.len()];
+    let ((), to) = parallel::join(
+        || {
+            for (h, &c) in corner.iter().enumerate() {
+                if c != none {
+                    halfedges[c as usize] = h as u32;
+                }
+            }
+        },
+        || {
+            parallel::map_in(to, corner.len(), |h: HalfedgeId| match corner[h.index()] {
+                // Where the other side starts.
+                c if c == none => vertices[corner[h.twin().index()] as usize],
+                c => vertices[following(c) as usize],
+            })
+        },
+    );
     let halfedge = |c: u32| HalfedgeId::new(halfedges[c as usize] as usize);
-    let prev = parallel::map(corner.len(), |h: HalfedgeId| match corner[h.index()] {
+    let prev = parallel::map_in(prev, corner.len(), |h: HalfedgeId| match corner[h.index()] {
         c if c == none => h,
         c => halfedge(preceding(c)),
     });
-    let first = first();
+    let face_halfedge = parallel::map_in(face_halfedge, faces.len(), |f: FaceId| {
+        halfedge(faces.face_start(f).index() as u32)
+    });
     // Takes the place of the corners.
-    let faces: Vec<_> =
+    let face: Vec<_> =
         corner.into_iter().map(|c| (c != none).then(|| FaceId::new(face(c)))).collect();
-    Connectivity {
-        prev,
-        face: faces.into(),
-        face_halfedge: first.into(),
-        ..Connectivity::default()
-    }
+    let face = face.into();
+    (Connectivity { prev, to, face, face_halfedge, ..Connectivity::default() }, halfedges)
 }
 
 /// Chains the half-edges without a face around each hole, and lets boundary vertices start with them.
@@ -475,23 +413,6 @@ mod tests {
         match Connectivity::from_faces(vertices, &FaceList::from_indices(faces)) {
             Err(Error::NotManifold(reason)) => reason,
             other => panic!("expected a refusal, got {other:?}"),
-        }
-    }
-
-    #[test]
-    fn few_sides_are_sorted_in_whichever_order_they_come() {
-        // Networks sort everything if they sort all lists of zeros and ones.
-        for len in 0..8 {
-            for bits in 0..1_u64 << len {
-                let mut sides: Vec<Side> =
-                    (0..len).map(|i| Side([0, (bits >> i & 1) as u32])).collect();
-                sort(&mut sides);
-                assert!(sides.is_sorted(), "{len} {bits:b}");
-                assert_eq!(
-                    sides.iter().map(|side| side.larger()).sum::<usize>(),
-                    bits.count_ones() as usize
-                );
-            }
         }
     }
 

@@ -7,7 +7,7 @@ use std::{ops::Range, sync::Arc};
 
 use crate::{
     FaceId, FaceList, VertexId,
-    build::assemble::{Side, sorted_sides},
+    build::sides::{Side, sorted_sides},
 };
 
 /// The side has no other at its edge.
