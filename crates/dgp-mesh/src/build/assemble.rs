@@ -241,12 +241,12 @@ impl Numbering<'_> {
     #[inline]
     fn push(&mut self, larger: usize, sides: [Option<&Side>; 2]) {
         let halfedge = HalfedgeId::new(2 * self.edges.count);
-        let mut corner = |h: HalfedgeId, side: Option<&Side>| match side {
-            Some(side) => side.corner() as u32,
-            None => {
-                self.edges.holes.push(h);
-                self.none
+        let mut corner = |h: HalfedgeId, side: Option<&Side>| {
+            if let Some(side) = side {
+                return side.corner() as u32;
             }
+            self.edges.holes.push(h);
+            self.none
         };
         let corners = [corner(halfedge, sides[0]), corner(halfedge.twin(), sides[1])];
         if self.starts[larger] == self.starts[larger + 1] {
