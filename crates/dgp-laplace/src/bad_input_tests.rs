@@ -11,7 +11,10 @@ use crate::{
     flow::{FlowOptions, HeatFlow, heat_step, mean_curvature_flow},
     intrinsic::{IntrinsicOptions, intrinsic_delaunay, tufted_laplacian},
     laplacian::{cotangent_laplacian, uniform_laplacian, vertex_masses},
-    smooth::{ImplicitOptions, implicit},
+    smooth::{
+        BilateralOptions, CotangentOptions, ImplicitOptions, TangentialOptions, TaubinOptions,
+        UniformOptions, bilateral, cotangent, implicit, tangential, taubin, uniform,
+    },
     spectral::{
         CompressionOptions, Eigenbasis, FunctionalMap, PartitionOptions, ZoomOutOptions, compress,
         fiedler, partition, zoomout,
@@ -129,6 +132,24 @@ fn what_is_no_number_is_an_error_with_its_place() {
             ("flow", {
                 let flow = FlowOptions::default();
                 mean_curvature_flow(&mut mesh.clone(), &none, 0.1, &flow, Progress::NONE).err()
+            }),
+            ("uniform", {
+                uniform(&mut mesh.clone(), &none, &UniformOptions::default(), Progress::NONE).err()
+            }),
+            ("Taubin", {
+                taubin(&mut mesh.clone(), &none, &TaubinOptions::default(), Progress::NONE).err()
+            }),
+            ("tangential", {
+                let tangents = TangentialOptions::default();
+                tangential(&mut mesh.clone(), &none, &tangents, Progress::NONE).err()
+            }),
+            ("cotangent", {
+                let cotangents = CotangentOptions::default();
+                cotangent(&mut mesh.clone(), &none, &cotangents, Progress::NONE).err()
+            }),
+            ("bilateral", {
+                let filter = BilateralOptions::default();
+                bilateral(&mut mesh.clone(), &none, &filter, Progress::NONE).err()
             }),
             ("implicit", {
                 implicit(&mut mesh.clone(), &none, &ImplicitOptions::default(), Progress::NONE)

@@ -15,6 +15,8 @@ pub(super) struct Case {
     pub(super) scipy: Option<&'static str>,
     /// Whether every driver gets one thread instead of all there are.
     pub(super) one_thread: bool,
+    /// Whether it also runs on the surface of many handles.
+    pub(super) handles: bool,
     /// Inputs with more triangles are left out.
     pub(super) largest: usize,
     pub(super) data: Data,
@@ -56,6 +58,7 @@ pub(super) fn all() -> Vec<Case> {
         cholmod: &[],
         scipy: None,
         one_thread: false,
+        handles: false,
         largest: usize::MAX,
         data: Data::Raw,
         figure: Figure::Time,
@@ -90,12 +93,14 @@ pub(super) fn all() -> Vec<Case> {
             openmesh: None,
             cgal: None,
             cholmod: &["amd", "metis"],
+            handles: true,
             ..case("cholesky", "order, factor and solve L + M with all threads", "cholesky")
         },
         Case {
             openmesh: None,
             cgal: None,
             cholmod: &["amd", "metis"],
+            handles: true,
             one_thread: true,
             ..case("cholesky-1", "order, factor and solve L + M with 1 thread", "cholesky")
         },
@@ -103,6 +108,7 @@ pub(super) fn all() -> Vec<Case> {
             openmesh: None,
             cgal: None,
             cholmod: &["amd", "metis"],
+            handles: true,
             figure: Figure::Entries("factor_entries"),
             ..case("fill", "entries of the factor of L + M per triangle", "cholesky")
         },
@@ -122,6 +128,7 @@ pub(super) fn all() -> Vec<Case> {
             openmesh: None,
             cgal: None,
             scipy: Some(name),
+            handles: true,
             largest,
             ..case(name, what, name)
         });

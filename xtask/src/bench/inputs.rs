@@ -1,4 +1,4 @@
-//! The inputs: spheres with noise, in the order of their making and shuffled.
+//! The inputs: spheres with noise, in the order of their making and shuffled, and a surface of many handles.
 
 use std::{
     fs,
@@ -19,6 +19,8 @@ pub(super) struct Input {
     pub(super) raw: PathBuf,
     /// The same with some faces turned over.
     pub(super) soup: PathBuf,
+    /// Whether it is there for the solvers, whose work depends on the handles.
+    pub(super) handles: bool,
     /// The folder with the mesh in every format, if it was written.
     pub(super) files: Option<PathBuf>,
 }
@@ -52,7 +54,14 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
                 eprintln!("{file}: {error}");
             }
         }
-        inputs.push(Input { name: name.clone(), triangles, raw: path, soup, files: Some(place) });
+        inputs.push(Input {
+            name: name.clone(),
+            triangles,
+            raw: path,
+            soup,
+            handles: false,
+            files: Some(place),
+        });
         if let Some(set) = shuffled {
             let path = folder.join(format!("{name}-shuffled.raw"));
             raw::write(&path, &set)?;
@@ -63,10 +72,25 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
                 triangles,
                 raw: path,
                 soup,
+                handles: false,
                 files: None,
             });
         }
     }
+    let cells = if effort == Effort::Quick { 4 } else { 25 };
+    let set = shapes::gyroid(3, cells)?.to_indexed();
+    let triangles = set.face_count();
+    let name = format!("gyroid-{}k", triangles / 1000);
+    let path = folder.join(format!("{name}.raw"));
+    raw::write(&path, &set)?;
+    inputs.push(Input {
+        name,
+        triangles,
+        soup: path.clone(),
+        raw: path,
+        handles: true,
+        files: None,
+    });
     Ok(inputs)
 }
 

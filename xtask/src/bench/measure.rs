@@ -43,7 +43,7 @@ pub(super) fn case(
     effort: Effort,
     folder: &Path,
 ) -> Option<Row> {
-    if input.triangles > case.largest {
+    if input.triangles > case.largest || (input.handles && !case.handles) {
         return None;
     }
     let (path, out) = match (case.data, &input.files) {

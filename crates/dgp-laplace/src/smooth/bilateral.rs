@@ -30,7 +30,7 @@ use dgp_sparse::SparseMatrix;
 
 use super::{
     Boundary, SmoothReport, Volume,
-    run::{Task, run},
+    run::{Task, check_finite, run},
 };
 use crate::{
     Error,
@@ -117,6 +117,7 @@ pub fn bilateral(
     if boundary == Boundary::Curve {
         return Err(Error::option("boundary", 1.0, "fixed or free: normals smooth no curves"));
     }
+    check_finite(mesh)?;
     let filter = Filter::new(mesh, sigma, neighborhood);
     let part = progress.part(0.0, 0.7);
     let normals = match scheme {

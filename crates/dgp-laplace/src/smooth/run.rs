@@ -29,6 +29,7 @@ pub(super) fn run(
     task: &Task<'_>,
     mut step: impl FnMut(&Rings, &mut Vec<DVec3>, &mut Vec<DVec3>),
 ) -> Result<SmoothReport, Error> {
+    check_finite(mesh)?;
     let rim = mesh.vertices().find(|&v| !mesh.is_isolated_vertex(v) && mesh.is_boundary_vertex(v));
     if task.volume == Volume::Keep {
         check_volume_can_be_kept(rim, task.fixed)?;
@@ -129,6 +130,14 @@ pub(super) fn fraction(name: &'static str, value: f64) -> Result<f64, Error> {
         return Ok(value);
     }
     Err(Error::option(name, value, "above 0 and at most 1"))
+}
+
+/// Refuses positions that would spread over their neighbors and on.
+pub(super) fn check_finite(mesh: &Mesh) -> Result<(), Error> {
+    match mesh.vertices().find(|&v| !mesh.position(v).is_finite()) {
+        Some(vertex) => Err(Error::NotFinite { vertex }),
+        None => Ok(()),
+    }
 }
 
 fn check_volume_can_be_kept(rim: Option<VertexId>, fixed: &VertexSet) -> Result<(), Error> {

@@ -274,6 +274,47 @@ fn a_turn_of_the_sphere_mixes_within_eigenspaces_alone() {
     assert!(inside < 2.9, "coordinates are exchanged: {inside}");
 }
 
+/// … and a conformal map keeps the energy of every function, but not areas: pulled back from a sphere by a
+/// Möbius transformation that doubles lengths at one pole, smooth functions have the energy they had, up to
+/// an error of second order.
+#[test]
+fn a_conformal_map_keeps_energies_alone() {
+    // Stereographic coordinates times k: z becomes ((1 + z)k² − (1 − z)) / ((1 + z)k² + (1 − z)).
+    let moebius = |p: DVec3| {
+        let (up, down) = (4.0 * (1.0 + p.z), 1.0 - p.z);
+        let sum = up + down;
+        DVec3::new(4.0 * p.x, 4.0 * p.y, up - down) / sum
+    };
+    let functions: [fn(DVec3) -> f64; 4] = [|p| p.x, |p| p.z, |p| p.x * p.y, |p| p.z * p.z];
+    let mut errors = Vec::new();
+    for level in [3, 4, 5] {
+        let mesh = shapes::icosphere(level).unwrap();
+        let mut image = mesh.clone();
+        image.set_positions(mesh.positions().map(|&p| moebius(p)));
+        let (masses, of_image) = (vertex_masses(&mesh), vertex_masses(&image));
+        let energy = |mesh: &Mesh, values: &[f64]| {
+            let laplacian = cotangent_laplacian(mesh).unwrap();
+            let product = laplacian.product(values);
+            values.iter().zip(product).map(|(x, y)| x * y).sum::<f64>()
+        };
+        let mut worst = 0.0_f64;
+        for function in functions {
+            let values: Vec<f64> =
+                image.positions().values().iter().map(|&p| function(p)).collect();
+            let [there, here] = [&image, &mesh].map(|mesh| energy(mesh, &values));
+            worst = worst.max((here / there - 1.0).abs());
+        }
+        let stretch = mesh.vertices().map(|v| of_image[v] / masses[v]);
+        let [least, most] = stretch.fold([f64::INFINITY, 0.0], |[a, b], x| [a.min(x), b.max(x)]);
+        assert!(least < 0.3 && most > 3.0, "areas are not kept: {least} to {most}");
+        errors.push(worst);
+    }
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.3, "{errors:?}");
+    }
+}
+
 /// A map that keeps areas and not lengths: orthogonal, but it does not commute.
 #[test]
 fn a_shear_of_the_torus_keeps_areas_alone() {

@@ -60,3 +60,57 @@ fn huge_and_tiny_solids_are_measured_too() {
     let huge = brick(DVec3::splat(-1.0), 0.4 * f64::MAX);
     assert_eq!(face_normals(&huge), face_normals(&brick(DVec3::ZERO, 1.0)));
 }
+
+/// Schwarz's lantern of radius and height 1, with m corners around and m³ bands of triangles.
+fn lantern(m: usize) -> Mesh {
+    let bands = m * m * m;
+    let ring = |k: usize| {
+        (0..m).map(move |i| {
+            let angle = 2.0 * PI * (i as f64 + 0.5 * (k % 2) as f64) / m as f64;
+            DVec3::new(angle.cos(), angle.sin(), k as f64 / bands as f64)
+        })
+    };
+    let positions: Vec<DVec3> = (0..=bands).flat_map(ring).collect();
+    let faces: Vec<[usize; 3]> = (0..bands)
+        .flat_map(|k| {
+            (0..m).flat_map(move |i| {
+                let (low, high) = (m * k, m * (k + 1));
+                let (j, next) = ((i + k % 2) % m, (i + 1) % m);
+                // A side on this ring with a corner above its middle, and the other way round.
+                let before = (j + m - 1) % m;
+                let up = [low + i, low + next, high + j];
+                let down = [low + i, high + j, high + before];
+                [up, down]
+            })
+        })
+        .collect();
+    Mesh::new(&IndexedFaceSet::new(positions, FaceList::from_indices(&faces)).unwrap()).unwrap()
+}
+
+/// Row 24 of the oracles: inscribed meshes come as near to a cylinder as one likes, while their area grows
+/// without bound and their normals turn away. What converges needs triangles that do not degenerate.
+#[test]
+fn the_lantern_of_schwarz_has_no_area_in_the_limit() {
+    let mut areas = Vec::new();
+    for m in [3, 6, 12] {
+        let mesh = lantern(m);
+        let bands = (m * m * m) as f64;
+        let angle = PI / m as f64;
+        // From the middles of the sides, which are farthest from the cylinder, to it.
+        let depth = 1.0 - angle.cos();
+        let exact = 2.0 * bands * m as f64 * angle.sin() * (bands.powi(-2) + depth * depth).sqrt();
+        assert!((area(&mesh) / exact - 1.0).abs() < 1e-12, "{} {exact}", area(&mesh));
+        for e in mesh.edges() {
+            let middle = mesh.edge_midpoint(e);
+            assert!(middle.truncate().length() > angle.cos() - 1e-12);
+        }
+        let slope = 1.0 / (1.0 + (bands * depth).powi(2)).sqrt();
+        for f in mesh.faces() {
+            let out = mesh.face_center(f).truncate().extend(0.0).normalize();
+            assert!((mesh.face_normal(f).dot(out) - slope).abs() < 1e-9, "{f}");
+        }
+        areas.push(exact);
+    }
+    // 2π is the cylinder's.
+    assert!(areas[1] > 1.8 * areas[0] && areas[2] > 1.9 * areas[1], "{areas:?}");
+}

@@ -8,7 +8,7 @@
 //! | boxes | [`cuboid`] [`quad_cuboid`] |
 //! | around an axis | [`surface_of_revolution`] [`cylinder`] [`capped_cylinder`] [`cone`] [`capped_cone`] [`dumbbell`] |
 //! | flat | [`grid`] [`quad_grid`] [`disk`] [`annulus`] |
-//! | with handles | [`torus`] [`quad_torus`] [`surface_of_genus`] [`quad_surface_of_genus`] [`trefoil`] |
+//! | with handles | [`torus`] [`quad_torus`] [`surface_of_genus`] [`quad_surface_of_genus`] [`gyroid`] [`trefoil`] |
 //! | closed and bumpy | [`blob`] |
 //! | one-sided | [`mobius_strip`], an [`IndexedFaceSet`](crate::IndexedFaceSet) since no mesh can hold it |
 //! | damage | [`with_noise`] [`with_holes`] [`shuffled`] [`flip_patch`] [`unweld_patch`] [`like_a_scan`] |
@@ -31,6 +31,7 @@ mod damage;
 mod flat;
 mod genus;
 mod goldberg;
+mod gyroid;
 mod knot;
 mod mobius;
 mod patch;
@@ -51,6 +52,7 @@ pub use damage::{flip_patch, shuffled, unweld_patch, with_holes, with_noise};
 pub use flat::{annulus, disk, grid, quad_grid};
 pub use genus::{quad_surface_of_genus, surface_of_genus};
 pub use goldberg::{geodesic_sphere, goldberg, truncated_icosahedron};
+pub use gyroid::gyroid;
 pub use knot::trefoil;
 pub use mobius::mobius_strip;
 pub use platonic::{cube, dodecahedron, icosahedron, octahedron, tetrahedron};
