@@ -106,7 +106,9 @@ fn per_item(floats: &[f64], count: usize, what: &str) -> Result<Vec<f64>, String
         _ if count == 0 => Err(format!("it names no {what}")),
         [single] => Ok(vec![*single; count]),
         list if list.len() == count => Ok(list.to_vec()),
-        list => Err(format!("it has {} numbers for {count} {what}; give one, or one each", list.len())),
+        list => {
+            Err(format!("it has {} numbers for {count} {what}; give one, or one each", list.len()))
+        }
     }
 }
 
@@ -140,9 +142,11 @@ mod tests {
 
     #[test]
     fn what_is_set_is_found_again_and_other_tags_stay() {
-        let mut document =
-            read_bytes(format!("{QUAD}t hole 1/0/0 0\nt corner 1/1/0 3 2\n").as_bytes(), Format::Obj)
-                .unwrap();
+        let mut document = read_bytes(
+            format!("{QUAD}t hole 1/0/0 0\nt corner 1/1/0 3 2\n").as_bytes(),
+            Format::Obj,
+        )
+        .unwrap();
         let mut rules = rules("t crease 2/1/0 0 1 2.5\nt interpolateboundary 1/0/0 2\n").unwrap();
         document.set_subdivision_rules(&rules);
         rules.others.push("hole".to_owned());

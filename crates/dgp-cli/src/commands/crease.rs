@@ -45,6 +45,11 @@ impl Creasing {
         self.creases
     }
 
+    /// Whether anything may be sharp.
+    pub(super) fn is_asked(&self) -> bool {
+        self.creases || self.crease_angle.is_some()
+    }
+
     /// How sharp edges and vertices are, and what the tags say.
     pub(super) fn sharpness(
         &self,

@@ -149,13 +149,20 @@ impl Subdivide {
         for warning in warnings(&document, &rules, &left_out, self.creasing.takes_tags()) {
             session.warn(format!("{}: {warning}", path.display()));
         }
-        let rules = rules_left(&mesh, &rules);
+        // What lies on the limit surface is no cage any more.
+        let on_limit = refining.limit || refining.adaptive.is_some();
+        let rules = if on_limit || !self.creasing.is_asked() {
+            SubdivisionRules::default()
+        } else {
+            rules_left(&mesh, &rules)
+        };
         if !had_sharpness {
             mesh.attributes_mut().vertex.remove(SHARPNESS);
         }
         if let Some(picture) = &self.pictured.picture {
             let levels = refining.levels();
-            let png = session.run("drawing", |progress| picture_of(&cage, &mesh, levels, progress))?;
+            let png =
+                session.run("drawing", |progress| picture_of(&cage, &mesh, levels, progress))?;
             session.store(picture, &png)?;
         }
         document = Document {
@@ -303,8 +310,7 @@ impl Refining {
         let levels = self.levels();
         let segments = u32::try_from(levels).ok().and_then(|levels| 1_usize.checked_shl(levels));
         let segments = segments.filter(|&segments| segments > 0).unwrap_or(usize::MAX);
-        let options =
-            PhongOptions { segments, alpha: self.alpha, memory_limit: self.memory_limit };
+        let options = PhongOptions { segments, alpha: self.alpha, memory_limit: self.memory_limit };
         let given = cage.attributes().vertex.get::<Normal>(NORMAL);
         let normals: VertexMap<_> = match given {
             Some(normals) => normals.to_map().map(|normal| normal.0),

@@ -1,6 +1,9 @@
 //! `dgp subdivide`: schemes, creases of files, limits, tolerances, what is refused.
 
-use std::fs;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use dgp::{
     io::Document,
@@ -85,7 +88,10 @@ fn creases_come_from_the_file_and_go_into_the_file() {
     let dgp = Dgp::new(&[("t.obj", TAGGED)]);
     let (code, value) = dgp.json("subdivide t.obj -o r.obj --levels 2 --creases");
     let report = &value["report"];
-    assert_eq!((code, &report["sharp_edges"], &report["sharp_vertices"]), (0, &4.into(), &1.into()));
+    assert_eq!(
+        (code, &report["sharp_edges"], &report["sharp_vertices"]),
+        (0, &4.into(), &1.into())
+    );
     assert_eq!(value["warnings"], json!([]));
     let found = read(&dgp, "r.obj");
     let rules = found.subdivision_rules().unwrap();
@@ -127,7 +133,8 @@ fn edges_that_bend_become_creases_on_request() {
     let (_, value) = dgp.json("subdivide cube.off -o r.off --crease-angle 91");
     assert_eq!(value["report"]["sharp_edges"], 0);
     // Half sharp, the middle of an edge moves half as far.
-    let (_, value) = dgp.json("subdivide cube.off -o r.off --crease-angle 80 --crease-sharpness .5");
+    let (_, value) =
+        dgp.json("subdivide cube.off -o r.off --crease-angle 80 --crease-sharpness .5");
     assert_eq!(value["report"]["sharp_edges"], 12);
     let found = read(&dgp, "r.off").set.positions().values().to_vec();
     let half = DVec3::new(0.5, 0.0625, 0.0625);
@@ -221,4 +228,41 @@ fn what_cannot_be_refined_is_refused_by_name_and_nothing_is_written() {
         }
     }
     assert_eq!(dgp.names(), before);
+}
+
+/// The cages and levels that OpenSubdiv's authors keep, where `../shared` or `DGP_SHARED_DATA` has them.
+#[test]
+fn shapes_of_opensubdiv_are_matched_with_their_tags() {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let data = std::env::var_os("DGP_SHARED_DATA").map_or(beside, PathBuf::from);
+    let folder = data.join("quads/subdiv_ref");
+    if !folder.is_dir() {
+        return;
+    }
+    let points = |path: &Path| dgp::io::read(path).unwrap().set.positions().values().to_vec();
+    for (name, scheme, levels) in [
+        ("catmark_cube_creases1", "catmull-clark", 3),
+        ("catmark_dart_edgeonly", "catmull-clark", 3),
+        ("catmark_edgecorner", "catmull-clark", 3),
+        ("catmark_edgeonly", "catmull-clark", 3),
+        ("loop_saddle_edgeonly", "loop", 4),
+        ("loop_triangle_edgeonly", "loop", 3),
+        ("bilinear_cube", "bilinear", 3),
+    ] {
+        let base = fs::read_to_string(folder.join(format!("{name}_base.obj"))).unwrap();
+        let dgp = Dgp::new(&[("base.obj", &base)]);
+        for level in 1..=levels {
+            let command = format!("subdivide base.obj -o r.obj --creases --scheme {scheme}");
+            let (code, value) = dgp.json(&format!("{command} --levels {level}"));
+            assert_eq!((code, &value["warnings"]), (0, &json!([])), "{name}");
+            let found = points(&dgp.folder().join("r.obj"));
+            let expected = points(&folder.join(format!("{name}_level{}.obj", level - 1)));
+            assert_eq!(found.len(), expected.len(), "{name} {level}");
+            for p in &expected {
+                let nearest = found.iter().map(|q| p.distance(*q)).fold(f64::INFINITY, f64::min);
+                // The files have six or seven digits.
+                assert!(nearest < 2e-6, "{name} {level}: {p} {nearest}");
+            }
+        }
+    }
 }

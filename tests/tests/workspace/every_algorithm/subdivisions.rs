@@ -6,8 +6,8 @@ use dgp_mesh::{
 };
 use dgp_subdiv::{
     ButterflyRule, FaceVarying, LoopWeights, PhongOptions, RefinementOptions, RefinementPlan,
-    Scheme, Sharpness, SubdivisionOptions, Surface, phong_tessellate,
-    refine_adaptively, refine_to_tolerance, subdivide,
+    Scheme, Sharpness, SubdivisionOptions, Surface, phong_tessellate, refine_adaptively,
+    refine_to_tolerance, subdivide,
 };
 
 use super::{
@@ -78,8 +78,12 @@ fn surfaces() -> Vec<Algorithm> {
         }),
         mesh("RefinementPlan", |m, p| {
             let options = refinement(Scheme::CatmullClark, 1);
-            let plan =
-                RefinementPlan::new(m, &creased(m, Scheme::CatmullClark), &options, p.part(0.0, 0.5));
+            let plan = RefinementPlan::new(
+                m,
+                &creased(m, Scheme::CatmullClark),
+                &options,
+                p.part(0.0, 0.5),
+            );
             let found = plan.and_then(|plan| {
                 let cage = m.positions().values();
                 let refined = plan.refine(cage)?;
