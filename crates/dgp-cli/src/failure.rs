@@ -151,6 +151,9 @@ impl Failure {
     /// The same, with the file it is about.
     pub(crate) fn in_file(self, path: &Path) -> Self {
         match self {
+            Failure::Io(dgp::io::Error::Tag { .. }) => {
+                Failure::InFile { path: path.to_owned(), source: Box::new(self) }
+            }
             Failure::Usage(_) | Failure::InFile { .. } | Failure::Io(_) | Failure::Text { .. } => {
                 self
             }
