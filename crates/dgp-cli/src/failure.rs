@@ -35,6 +35,23 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Sparse(#[from] dgp::sparse::Error),
 
+    /// Subdivision.
+    #[error("{source}{}", remedy(source))]
+    Subdiv {
+        /// What went wrong.
+        #[from]
+        source: dgp::subdiv::Error,
+    },
+
+    /// A crease or a corner of a file is too sharp, or less than smooth.
+    #[error("{what} has sharpness {sharpness}, but it must be 0 (smooth) to 10 (sharp for ever)")]
+    Sharpness {
+        /// What has it.
+        what: String,
+        /// How sharp it is.
+        sharpness: f64,
+    },
+
     /// A text that is no mesh, such as a matrix.
     #[error("cannot read {}: {source}", path.display())]
     Text {
@@ -134,6 +151,9 @@ impl Failure {
     /// The same, with the file it is about.
     pub(crate) fn in_file(self, path: &Path) -> Self {
         match self {
+            Failure::Io(dgp::io::Error::Tag { .. }) => {
+                Failure::InFile { path: path.to_owned(), source: Box::new(self) }
+            }
             Failure::Usage(_) | Failure::InFile { .. } | Failure::Io(_) | Failure::Text { .. } => {
                 self
             }
@@ -150,5 +170,16 @@ impl Failure {
     /// The exit code for it.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(if matches!(self, Failure::Usage(_)) { 2 } else { 1 })
+    }
+}
+
+/// Which command or option helps.
+fn remedy(error: &dgp::subdiv::Error) -> &'static str {
+    use dgp::subdiv::Error;
+    match error {
+        Error::NotTriangle { .. } => "; `dgp convert --triangulate` cuts all faces",
+        Error::IsolatedVertex { .. } => "; `dgp repair` does",
+        Error::TooLarge { .. } => " with --memory-limit",
+        _ => "",
     }
 }

@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Command::Convert(command) => command.run(&common),
         Command::Repair(command) => command.run(&common),
         Command::Smooth(command) => command.run(&common),
+        Command::Subdivide(command) => command.run(&common),
         Command::Edit(command) => command.run(&common),
         Command::Geodesic(command) => command.run(&common),
         Command::Curvature(command) => command.run(&common),

@@ -105,6 +105,17 @@ pub enum Error {
         /// How many vertices there are.
         vertex_count: usize,
     },
+
+    /// A tag of a subdivision surface makes no sense.
+    #[error("tag {number}, `{name}`: {problem}")]
+    Tag {
+        /// Which of the tags, from 0.
+        number: usize,
+        /// What it is called.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+    },
 }
 
 impl From<dgp_mesh::Error> for Error {

@@ -40,6 +40,7 @@ mod print;
 mod pulse;
 mod report;
 mod stl;
+mod subdivision;
 mod text;
 mod weld;
 mod xyz;
@@ -54,6 +55,7 @@ pub use document::{
 pub use error::{Cause, Error, Place};
 pub use format::{Encoding, Format};
 pub use report::{Loss, ReadOptions, ReadReport, Warning, WriteOptions, WriteReport};
+pub use subdivision::SubdivisionRules;
 
 use error::{Fault, Stop};
 use output::Output;

@@ -20,7 +20,7 @@ use std::collections::HashMap;
 use dgp_mesh::{Connectivity, DVec3, FaceList, Mesh, Progress, VertexId};
 
 use crate::{
-    Counts, Error, RefinementOptions, RefinementPlan, Sharpness,
+    Counts, Error, RefinementOptions, RefinementPlan, Scheme, Sharpness,
     limit::{Limit, LimitMasks},
     masks,
     plan::Level,
@@ -56,12 +56,94 @@ pub fn refine_adaptively(
     wants_split: impl Fn(usize, &[DVec3]) -> bool,
     progress: Progress<'_>,
 ) -> Result<Mesh, Error> {
-    check_finite(mesh.positions().values())?;
-    let scheme = options.scheme;
-    let kind = match Kind::of(scheme) {
-        Some(kind) if kind != Kind::Bilinear => kind,
-        _ => return Err(Error::NoLimit { scheme: scheme.name() }),
+    let choose = |patch: &Patch, level: usize, vertices: &Vertices, _: u64| {
+        let leaves = if level < options.levels { patch.leaves } else { 0 };
+        Ok(patch.asked(0..leaves as u32, level, vertices, &wants_split))
     };
+    refine(mesh, sharpness, options, choose, progress)
+}
+
+/// What [`refine_to_tolerance`] reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[must_use]
+pub struct ToleranceReport {
+    /// How often the faces that were split most were split.
+    pub levels: usize,
+    /// How far, at most, the limit surface was found off the faces.
+    pub largest_deviation: f64,
+    /// How many faces are off by more than the tolerance, because `levels` did not suffice.
+    pub faces_beyond: usize,
+}
+
+/// The limit surface of `mesh` with faces split until they are as flat as `tolerance`, a length, at most
+/// `options.levels` times, without attributes.
+///
+/// Each face is split once, so that a bend and its opposite on one edge are seen. From then on it is split
+/// if a corner or the middle of the surface above it is farther than `tolerance` from its plane, or the
+/// middle above a side from that side. So the deviation is measured at the middles, not bounded.
+///
+/// Errors: as [`refine_adaptively`], and [`Error::InvalidOption`] unless `tolerance` is positive.
+///
+/// ```
+/// use dgp_mesh::{Progress, shapes};
+/// use dgp_subdiv::{RefinementOptions, Sharpness, refine_to_tolerance};
+///
+/// let options = RefinementOptions { levels: 8, ..RefinementOptions::default() };
+/// let (cube, smooth) = (shapes::cube(), Sharpness::new());
+/// let (mesh, report) = refine_to_tolerance(&cube, &smooth, &options, 1e-3, Progress::NONE)?;
+/// assert!(report.faces_beyond == 0 && report.largest_deviation <= 1e-3);
+/// assert_eq!(dgp_mesh::topology::euler_characteristic(&mesh), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn refine_to_tolerance(
+    mesh: &Mesh,
+    sharpness: &Sharpness,
+    options: &RefinementOptions,
+    tolerance: f64,
+    progress: Progress<'_>,
+) -> Result<(Mesh, ToleranceReport), Error> {
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        let (name, expected) = ("tolerance", "positive");
+        return Err(Error::InvalidOption { name, value: tolerance, expected });
+    }
+    let kind = kind(options.scheme)?;
+    let mut report = ToleranceReport::default();
+    let choose = |patch: &Patch, level: usize, vertices: &Vertices, bytes: u64| {
+        report.levels = level;
+        let mut asked = Vec::new();
+        let limit = options.memory_limit;
+        for (f, deviation) in (0..).zip(patch.deviations(kind, vertices, (bytes, limit), level)?) {
+            if level < options.levels && (level == 0 || deviation > tolerance) {
+                asked.push(f);
+            } else {
+                report.largest_deviation = report.largest_deviation.max(deviation);
+                report.faces_beyond += usize::from(deviation > tolerance);
+            }
+        }
+        Ok(asked)
+    };
+    let refined = refine(mesh, sharpness, options, choose, progress)?;
+    Ok((refined, report))
+}
+
+fn kind(scheme: Scheme) -> Result<Kind, Error> {
+    match Kind::of(scheme) {
+        Some(kind) if kind != Kind::Bilinear => Ok(kind),
+        _ => Err(Error::NoLimit { scheme: scheme.name() }),
+    }
+}
+
+/// Splits the faces that `choose` lists, given what there is of a level, its number, all vertices and the
+/// bytes used so far. What it lists of the last level is not split.
+fn refine(
+    mesh: &Mesh,
+    sharpness: &Sharpness,
+    options: &RefinementOptions,
+    mut choose: impl FnMut(&Patch, usize, &Vertices, u64) -> Result<Vec<u32>, Error>,
+    progress: Progress<'_>,
+) -> Result<Mesh, Error> {
+    check_finite(mesh.positions().values())?;
+    let kind = kind(options.scheme)?;
     // Checks the cage; its levels are made here.
     let cage = RefinementOptions { levels: 0, ..*options };
     let plan = RefinementPlan::new(mesh, sharpness, &cage, progress.part(0.0, 0.1))?;
@@ -83,12 +165,11 @@ pub fn refine_adaptively(
         let patch = &mut patches[level];
         patch.place(kind, &mut vertices);
         check_finite(&vertices.positions)?;
-        if level < options.levels {
-            patch.ask(level, &vertices, &wants_split);
-        }
-        if patch.asked.is_empty() {
+        let asked = choose(patch, level, &vertices, bytes)?;
+        if level == options.levels || asked.is_empty() {
             break;
         }
+        patch.asked = asked;
         let next = patch.split(kind, &mut vertices);
         bytes = bytes.saturating_add(next.bytes());
         if bytes > options.memory_limit {
@@ -149,33 +230,82 @@ impl Patch {
         }
     }
 
-    fn ask(
-        &mut self,
+    /// Where the corners of a leaf are on the limit surface.
+    fn corners(&self, f: u32, vertices: &Vertices, corners: &mut Vec<DVec3>) {
+        corners.clear();
+        let id = |c: u32| self.ids[self.topology.vertex(c) as usize] as usize;
+        corners.extend(self.topology.corners(f).map(|c| vertices.positions[id(c)]));
+    }
+
+    /// Those of `leaves` that are to be split.
+    fn asked(
+        &self,
+        leaves: std::ops::Range<u32>,
         level: usize,
         vertices: &Vertices,
         wants_split: impl Fn(usize, &[DVec3]) -> bool,
-    ) {
+    ) -> Vec<u32> {
         let mut corners = Vec::new();
-        for f in 0..self.leaves as u32 {
-            corners.clear();
-            let vertex = |c: u32| self.ids[self.topology.vertex(c) as usize] as usize;
-            corners.extend(self.topology.corners(f).map(|c| vertices.positions[vertex(c)]));
-            if wants_split(level, &corners) {
-                self.asked.push(f);
-            }
-        }
+        let wants = |&f: &u32| {
+            self.corners(f, vertices, &mut corners);
+            wants_split(level, &corners)
+        };
+        leaves.filter(wants).collect()
     }
 
-    /// Splits the faces asked for, with all that touch them.
-    fn split(&mut self, kind: Kind, vertices: &mut Vertices) -> Patch {
+    /// How far each leaf is from the limit surface above its middle and those of its sides, and from flat.
+    fn deviations(
+        &self,
+        kind: Kind,
+        vertices: &Vertices,
+        (bytes, limit): (u64, u64),
+        level: usize,
+    ) -> Result<Vec<f64>, Error> {
+        let leaves: Vec<u32> = (0..self.leaves as u32).collect();
+        let Part { topology: part, creases, values, .. } = self.part(&leaves, kind);
+        let topology = match kind {
+            Kind::Loop(_) => split_triangles(&part),
+            Kind::CatmullClark | Kind::Bilinear => split_polygons(&part),
+        };
+        let bytes = bytes.saturating_add(bytes_of(&topology));
+        if bytes > limit {
+            let faces = topology.face_count() as u64;
+            return Err(Error::TooLarge { level: level + 1, faces, bytes, limit });
+        }
+        let creases = creases.refined();
+        let what = Limit::Position;
+        let masks = LimitMasks { topology: &topology, creases: &creases, kind, what };
+        let limits = masks::apply(&masks, &values);
+        // Points on edges are numbered after the vertices, points in faces after those.
+        let (edges, faces) = (part.vertex_count(), part.vertex_count() + part.edge_count());
+        let mut corners = Vec::new();
+        let deviation = |f: &u32| {
+            self.corners(*f, vertices, &mut corners);
+            let mut worst = 0.0_f64;
+            let next = corners.iter().cycle().skip(1);
+            for ((&a, &b), c) in corners.iter().zip(next).zip(part.corners(*f)) {
+                let middle = limits[edges + part.corner_halfedge[c as usize] as usize / 2];
+                worst = worst.max(distance_to_segment(middle, a, b));
+            }
+            let in_face = match kind {
+                Kind::Loop(_) => None,
+                Kind::CatmullClark | Kind::Bilinear => Some(limits[faces + *f as usize]),
+            };
+            worst.max(distance_to_plane(&corners, in_face))
+        };
+        Ok(leaves.iter().map(deviation).collect())
+    }
+
+    /// `faces` and all that touch them, refined once.
+    fn part(&self, asked: &[u32], kind: Kind) -> Part {
         let topology = &self.topology;
         let mut is_in = vec![false; topology.face_count()];
-        let mut faces = self.asked.clone();
+        let mut faces = asked.to_vec();
         for &f in &faces {
             is_in[f as usize] = true;
         }
         let mut spokes = Vec::new();
-        for c in self.asked.iter().flat_map(|&f| topology.corners(f)) {
+        for c in asked.iter().flat_map(|&f| topology.corners(f)) {
             topology.spokes(topology.vertex(c) as usize, &mut spokes);
             for corner in spokes.iter().map(|&h| topology.corner(h)).filter(|&c| c != NONE) {
                 let f = topology.face(corner);
@@ -185,12 +315,19 @@ impl Patch {
                 }
             }
         }
-        let (part, part_vertices, part_edges) = topology.part(&faces);
-        let edges = part_edges.iter().map(|&e| self.creases.edge(topology, e as usize)).collect();
-        let sharp = part_vertices.iter().map(|&v| self.creases.vertex(v as usize)).collect();
-        let creases = Creases::listed(edges, sharp);
-        let old: Vec<DVec3> = part_vertices.iter().map(|&v| self.values[v as usize]).collect();
+        let (part, vertices, edges) = topology.part(&faces);
+        let sharp_edges = edges.iter().map(|&e| self.creases.edge(topology, e as usize)).collect();
+        let sharp = vertices.iter().map(|&v| self.creases.vertex(v as usize)).collect();
+        let creases = Creases::listed(sharp_edges, sharp);
+        let old: Vec<DVec3> = vertices.iter().map(|&v| self.values[v as usize]).collect();
         let values = masks::apply(&Primal::new(&part, &creases, kind), &old);
+        Part { topology: part, creases, values, vertices, edges }
+    }
+
+    /// Splits the faces asked for, with all that touch them.
+    fn split(&mut self, kind: Kind, vertices: &mut Vertices) -> Patch {
+        let Part { topology: part, creases, values, vertices: part_vertices, edges: part_edges } =
+            self.part(&self.asked, kind);
         let mut ids: Vec<u32> = part_vertices.iter().map(|&v| self.ids[v as usize]).collect();
         ids.resize_with(values.len(), || vertices.add());
         // The faces asked for come first in the part, and so do their children.
@@ -207,16 +344,51 @@ impl Patch {
     }
 
     fn bytes(&self) -> u64 {
-        let counts = Counts {
-            vertices: self.values.len() as u64,
-            edges: self.topology.edge_count() as u64,
-            corners: self.topology.corner_count() as u64,
-            faces: self.topology.face_count() as u64,
-        };
-        let none =
-            RefinementOptions { levels: 0, memory_limit: u64::MAX, ..RefinementOptions::default() };
-        none.predict(counts).map_or(u64::MAX, |(_, bytes)| bytes)
+        bytes_of(&self.topology)
     }
+}
+
+/// Faces that are split with all that touch them.
+struct Part {
+    /// As it is before the split.
+    topology: Topology,
+    creases: Creases,
+    /// Where vertices are after it.
+    values: Vec<DVec3>,
+    /// Which vertices and edges of the patch its own are.
+    vertices: Vec<u32>,
+    edges: Vec<u32>,
+}
+
+fn bytes_of(topology: &Topology) -> u64 {
+    let counts = Counts {
+        vertices: topology.vertex_count() as u64,
+        edges: topology.edge_count() as u64,
+        corners: topology.corner_count() as u64,
+        faces: topology.face_count() as u64,
+    };
+    let none =
+        RefinementOptions { levels: 0, memory_limit: u64::MAX, ..RefinementOptions::default() };
+    none.predict(counts).map_or(u64::MAX, |(_, bytes)| bytes)
+}
+
+fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (ab, ap) = (b - a, p - a);
+    let square = ab.length_squared();
+    let t = if square > 0.0 { (ap.dot(ab) / square).clamp(0.0, 1.0) } else { 0.0 };
+    ap.distance(t * ab)
+}
+
+/// How far corners and one more point are from the plane through the mean of the corners that is as
+/// parallel to them as can be.
+fn distance_to_plane(corners: &[DVec3], point: Option<DVec3>) -> f64 {
+    let center = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    let next = corners.iter().cycle().skip(1);
+    let normal: DVec3 =
+        corners.iter().zip(next).map(|(&a, &b)| (a - center).cross(b - center)).sum();
+    let normal = normal.normalize_or_zero();
+    let points = corners.iter().copied().chain(point);
+    points.map(|p| (p - center).dot(normal).abs()).fold(0.0, f64::max)
 }
 
 /// The leaves of all levels that are not split, with the vertices on their sides.

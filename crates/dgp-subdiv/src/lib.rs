@@ -8,7 +8,7 @@
 //! | creases, corners, rims | [`Sharpness`], [`BoundaryRule`] |
 //! | limit positions and tangents | [`RefinementPlan::limit`], [`RefinementPlan::limit_tangents`] |
 //! | the limit surface at any point | [`RefinementPlan::evaluate`], [`SurfacePoint`] |
-//! | faces split where asked only | [`refine_adaptively`] |
+//! | faces split where asked, or until flat | [`refine_adaptively`], [`refine_to_tolerance`] |
 //! | masks | [`loop_scheme`], [`catmull_clark`], [`butterfly`], [`sqrt3`], [`doo_sabin`] |
 //! | triangles bent by normals | [`phong_tessellate`] |
 //!
@@ -46,7 +46,7 @@ mod stencil;
 mod subdivide;
 mod topology;
 
-pub use adaptive::refine_adaptively;
+pub use adaptive::{ToleranceReport, refine_adaptively, refine_to_tolerance};
 pub use error::Error;
 pub use evaluate::SurfacePoint;
 pub use face_varying::FaceVarying;

@@ -12,12 +12,17 @@
 //! | edges | those of the two halves; defaults inside faces. Left out by √3 and Doo–Sabin |
 //! | faces | those of the face of the cage |
 
-use dgp_mesh::{Connectivity, DVec3, FaceId, FaceList, HalfedgeId, Mesh, Progress, VertexId};
+use dgp_mesh::{
+    Connectivity, DVec3, FaceId, FaceList, HalfedgeId, Mesh, NORMAL, Normal, Progress, VertexId,
+    VertexMap,
+    measure::{NormalWeight, vertex_normal},
+};
 
 use crate::{
-    Counts, Error, RefinementOptions, RefinementPlan, SHARPNESS, Scheme, Sharpness,
+    Counts, Error, RefinementOptions, RefinementPlan, SHARP, SHARPNESS, Scheme, Sharpness,
     face_varying::{FaceVarying, refined_corners},
     options::BoundaryRule,
+    plan::Level,
     topology::{NONE, Topology},
 };
 
@@ -40,6 +45,10 @@ pub enum Surface {
     Refined,
     /// On the limit surface.
     Limit,
+    /// On the limit surface, with its normals as the vertex attribute [`NORMAL`], in place of normals there
+    /// were. Where creases or corners stay sharp for ever inside the surface, which has several normals
+    /// there, it is the mean over the faces.
+    LimitAndNormals,
 }
 
 /// What [`subdivide`] did.
@@ -84,7 +93,11 @@ pub fn subdivide(
     check_finite(mesh.positions().values())?;
     let plan = RefinementPlan::new(mesh, sharpness, &options.refinement, progress.part(0.0, 0.4))?;
     let mut positions = plan.refine(mesh.positions().values())?;
-    if options.surface == Surface::Limit {
+    let tangents = match options.surface {
+        Surface::LimitAndNormals => Some(plan.limit_tangents(&positions)?),
+        Surface::Refined | Surface::Limit => None,
+    };
+    if options.surface != Surface::Refined {
         positions = plan.limit(&positions)?;
     }
     check_finite(&positions)?;
@@ -94,6 +107,11 @@ pub fn subdivide(
     progress.report(0.8)?;
     let left_out =
         carry((mesh, sharpness), options, (&plan, &result), &mut refined, progress.part(0.8, 1.0))?;
+    if let Some(tangents) = tangents {
+        let normals = result.normals(&plan, &tangents, &refined);
+        refined.attributes_mut().corner.remove(NORMAL);
+        refined.attributes_mut().vertex.insert(NORMAL, normals);
+    }
     let counts = |mesh: &Connectivity| Counts {
         vertices: mesh.vertex_count() as u64,
         edges: mesh.edge_count() as u64,
@@ -167,6 +185,38 @@ impl Selection {
         let positions: Vec<DVec3> = self.vertices.iter().map(|&v| positions[v as usize]).collect();
         let connectivity = Connectivity::from_faces(positions.len(), &list)?;
         Ok(Mesh::from_parts(connectivity, positions.into()))
+    }
+
+    /// The normals of the result.
+    fn normals(
+        &self,
+        plan: &RefinementPlan,
+        [first, second]: &[Vec<DVec3>; 2],
+        refined: &Mesh,
+    ) -> VertexMap<Normal> {
+        let Level { topology, creases, .. } = plan.last();
+        let mut sharp_edges = vec![0_u32; first.len()];
+        for e in 0..topology.edge_count() {
+            if creases.listed_edge(e) >= SHARP && !topology.is_boundary_edge(e) {
+                for h in [2 * e as u32, 2 * e as u32 + 1] {
+                    sharp_edges[topology.to(h) as usize] += 1;
+                }
+            }
+        }
+        refined.map_vertices(|v| {
+            let old = self.vertices[v.index()] as usize;
+            // A single sharp edge ends there, where the surface is smooth.
+            let is_smooth = if topology.is_boundary_vertex(old) {
+                sharp_edges[old] == 0
+            } else {
+                sharp_edges[old] < 2 && creases.vertex(old) < SHARP
+            };
+            let normal = first[old].normalize_or_zero().cross(second[old].normalize_or_zero());
+            match normal.try_normalize() {
+                Some(normal) if is_smooth => Normal(normal),
+                _ => Normal(vertex_normal(refined, v, NormalWeight::Angle)),
+            }
+        })
     }
 
     /// For each half-edge of the result that has a face, its corner at the last level.

@@ -5,6 +5,7 @@ mod completions;
 mod compress;
 mod convert;
 mod correspond;
+mod crease;
 mod curvature;
 mod demo;
 mod edit;
@@ -21,6 +22,7 @@ mod shape;
 mod smooth;
 mod solve;
 mod spectrum;
+mod subdivide;
 
 use std::path::Path;
 
@@ -41,6 +43,8 @@ pub(crate) enum Command {
     Repair(repair::Repair),
     /// Remove noise
     Smooth(smooth::Smooth),
+    /// Refine a coarse cage into a smooth surface, with creases
+    Subdivide(subdivide::Subdivide),
     /// Flip, split, collapse, add and remove single elements
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two

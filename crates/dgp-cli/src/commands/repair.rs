@@ -170,7 +170,8 @@ pub(crate) fn sentence(action: RepairAction) -> String {
     action.name().replace('_', " ")
 }
 
-fn tolerance(text: &str) -> Result<Tolerance, String> {
+/// 0, a length, or a percentage of the diagonal.
+pub(super) fn tolerance(text: &str) -> Result<Tolerance, String> {
     let (number, is_percentage) = match text.strip_suffix('%') {
         Some(number) => (number, true),
         None => (text, false),

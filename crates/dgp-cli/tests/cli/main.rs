@@ -4,6 +4,7 @@ mod elements;
 mod folder;
 mod operators;
 mod spectra;
+mod subdivision;
 mod texts;
 
 use std::fs;

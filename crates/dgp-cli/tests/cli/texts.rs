@@ -2,12 +2,13 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 21] = [
     "info",
     "check",
     "convert",
     "repair",
     "smooth",
+    "subdivide",
     "edit",
     "geodesic",
     "curvature",

@@ -3,7 +3,7 @@
 use dgp_mesh::{DVec3, Mesh, Progress, VertexId, shapes, topology::euler_characteristic};
 use dgp_subdiv::{
     Error, LoopWeights, RefinementOptions, RefinementPlan, SHARP, Scheme, Sharpness,
-    refine_adaptively,
+    refine_adaptively, refine_to_tolerance,
 };
 
 const LOOP: Scheme = Scheme::Loop(LoopWeights::Original);
@@ -90,4 +90,52 @@ fn only_schemes_with_a_limit_are_taken_and_memory_is_kept_to() {
     assert!(matches!(refuse(options(Scheme::DooSabin, 2)), Error::NoLimit { .. }));
     let little = RefinementOptions { memory_limit: 1 << 20, ..options(Scheme::CatmullClark, 40) };
     assert!(matches!(refuse(little), Error::TooLarge { level, .. } if level < 10));
+}
+
+#[test]
+fn a_tolerance_is_kept_with_fewer_faces_than_everywhere() {
+    let mut saved = 0;
+    for (mesh, scheme) in cages() {
+        for sharpness in [Sharpness::new(), creased(&mesh)] {
+            let (options, tolerance) = (options(scheme, 7), 4e-3);
+            let (refined, report) =
+                refine_to_tolerance(&mesh, &sharpness, &options, tolerance, Progress::NONE)
+                    .unwrap();
+            assert_eq!(euler_characteristic(&refined), euler_characteristic(&mesh), "{scheme:?}");
+            assert!(
+                report.faces_beyond == 0 && report.largest_deviation <= tolerance,
+                "{report:?}"
+            );
+            assert!(report.levels >= 1, "each face is split once");
+            let everywhere = RefinementOptions { levels: report.levels, ..options };
+            let plan = RefinementPlan::new(&mesh, &sharpness, &everywhere, Progress::NONE).unwrap();
+            let all = plan.counts(report.levels).faces as usize;
+            assert!(refined.face_count() <= all, "{scheme:?} {report:?}");
+            saved += usize::from(refined.face_count() < all);
+            // A quarter of the tolerance takes no fewer, and comes closer.
+            let (finer, closer) =
+                refine_to_tolerance(&mesh, &sharpness, &options, tolerance / 4.0, Progress::NONE)
+                    .unwrap();
+            assert!(finer.face_count() >= refined.face_count());
+            assert!(closer.largest_deviation <= tolerance / 4.0, "{closer:?}");
+        }
+    }
+    assert!(saved > 6, "only {saved} of 14 meshes have faces of several sizes");
+}
+
+#[test]
+fn levels_that_do_not_suffice_are_told_and_tolerances_are_positive() {
+    let (mesh, smooth) = (shapes::cube(), Sharpness::new());
+    let refine = |options, tolerance| {
+        refine_to_tolerance(&mesh, &smooth, &options, tolerance, Progress::NONE)
+    };
+    let (refined, report) = refine(options(Scheme::CatmullClark, 2), 1e-9).unwrap();
+    assert_eq!((refined.face_count(), report.faces_beyond, report.levels), (96, 96, 2));
+    assert!(report.largest_deviation > 1e-3, "{report:?}");
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = refine(options(Scheme::CatmullClark, 2), tolerance).unwrap_err();
+        assert!(matches!(error, Error::InvalidOption { name: "tolerance", .. }), "{error}");
+    }
+    let little = RefinementOptions { memory_limit: 1 << 20, ..options(Scheme::CatmullClark, 40) };
+    assert!(matches!(refine(little, 1e-12), Err(Error::TooLarge { level, .. }) if level < 10));
 }

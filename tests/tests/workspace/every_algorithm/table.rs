@@ -18,7 +18,7 @@ use dgp_mesh::{
 };
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
-use super::{inputs::Input, laplacians::laplacians, outcome::Outcome};
+use super::{inputs::Input, laplacians::laplacians, outcome::Outcome, subdivisions::subdivisions};
 
 /// A name and what to run.
 pub(crate) struct Algorithm {
@@ -53,6 +53,7 @@ pub(crate) fn algorithms() -> Vec<Algorithm> {
         edits(),
         smoothing(),
         laplacians(),
+        subdivisions(),
         pictures_and_files(),
     ]
     .into_iter()
@@ -82,7 +83,9 @@ pub(crate) fn changed<T: std::fmt::Debug>(
 }
 
 /// The outcome of what makes a mesh, and maybe a report, or an error.
-fn made<T: std::fmt::Debug, E: std::fmt::Debug>(result: Result<(Mesh, T), E>) -> Outcome {
+pub(crate) fn made<T: std::fmt::Debug, E: std::fmt::Debug>(
+    result: Result<(Mesh, T), E>,
+) -> Outcome {
     match result {
         Ok((mesh, told)) => Outcome::of_mesh(&mesh, &told),
         Err(error) => Outcome::of(&error),
