@@ -1,7 +1,7 @@
 //! One operation of ours in a process of its own, by the protocol of the reference drivers, so that
 //! time and memory of peers and of us are measured alike.
 
-mod subdivision;
+pub(crate) mod subdivision;
 
 use std::{
     fs,
