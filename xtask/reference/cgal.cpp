@@ -15,6 +15,7 @@
 #include <CGAL/Surface_mesh/IO.h>
 #include <CGAL/Weights/utils.h>
 #include <CGAL/boost/graph/IO/polygon_mesh_io.h>
+#include <CGAL/subdivision_method_3.h>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 
 #include <Eigen/Sparse>
@@ -202,6 +203,45 @@ void repair(Report& report, const Raw& raw, const Call& call) {
     counts(report, mesh);
 }
 
+// Refines a copy; the last one is written.
+void subdivide(Report& report, const Raw& raw, const Call& call) {
+    namespace method = CGAL::Subdivision_method_3;
+    const auto original = built(raw);
+    std::unique_ptr<Mesh> last;
+    report.time_from(
+        call.repeat,
+        [&] {
+            last.reset();
+            last = std::make_unique<Mesh>(*original);
+            return last.get();
+        },
+        [&](Mesh* mesh) {
+            const auto levels = CGAL::parameters::number_of_iterations(unsigned(call.levels));
+            if (call.scheme == "loop") method::Loop_subdivision(*mesh, levels);
+            else if (call.scheme == "catmull-clark") method::CatmullClark_subdivision(*mesh, levels);
+            else if (call.scheme == "doo-sabin") method::DooSabin_subdivision(*mesh, levels);
+            else if (call.scheme == "sqrt3") method::Sqrt3_subdivision(*mesh, levels);
+            else throw std::runtime_error("CGAL has no scheme " + call.scheme);
+            return 0;
+        });
+    report.number("vertices", double(last->number_of_vertices()));
+    report.number("faces", double(last->number_of_faces()));
+    if (call.out.empty()) return;
+    Raw out;
+    std::vector<uint32_t> number(last->num_vertices());
+    for (const auto v : last->vertices()) {
+        number[v] = uint32_t(out.points.size());
+        const Point& p = last->point(v);
+        out.points.push_back({p.x(), p.y(), p.z()});
+    }
+    out.starts.push_back(0);
+    for (const auto f : last->faces()) {
+        for (const auto v : vertices_around_face(halfedge(f, *last), *last)) out.corners.push_back(number[v]);
+        out.starts.push_back(uint32_t(out.corners.size()));
+    }
+    write_raw(call.out + ".raw", out);
+}
+
 void rings(Report& report, const Raw& raw, int repeat) {
     const auto mesh = built(raw);
     double sum = 0;
@@ -313,6 +353,7 @@ int main(int count, char** arguments) {
         else {
             const Raw raw = read_raw(call.input);
             if (call.operation == "facts") facts(report, raw, call.out);
+            else if (call.operation == "subdivide") subdivide(report, raw, call);
             else if (call.operation == "repair") repair(report, raw, call);
             else if (call.operation == "dijkstra") dijkstra(report, raw, call);
             else if (call.operation == "curvature") curvature(raw, call);

@@ -5,6 +5,10 @@
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Smoother/JacobiLaplaceSmootherT.hh>
+#include <OpenMesh/Tools/Subdivider/Uniform/CatmullClarkT.hh>
+#include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
+#include <OpenMesh/Tools/Subdivider/Uniform/ModifiedButterFlyT.hh>
+#include <OpenMesh/Tools/Subdivider/Uniform/Sqrt3T.hh>
 
 #include <memory>
 
@@ -181,6 +185,49 @@ void smooth(Report& report, const Raw& raw, int repeat) {
     report.list("cpu_ms", cpu);
 }
 
+// Refines a copy; the last one is written.
+template <class Mesh, class Subdivider>
+void refined(Report& report, const Raw& raw, const Call& call) {
+    const auto original = built<Mesh>(raw);
+    std::unique_ptr<Mesh> last;
+    report.time_from(
+        call.repeat,
+        [&] {
+            last.reset();
+            last = std::make_unique<Mesh>(*original);
+            return last.get();
+        },
+        [&](Mesh* mesh) {
+            Subdivider subdivider;
+            if (!subdivider(*mesh, std::size_t(call.levels))) throw std::runtime_error("OpenMesh does not refine it");
+            return 0;
+        });
+    report.number("vertices", double(last->n_vertices()));
+    report.number("faces", double(last->n_faces()));
+    if (call.out.empty()) return;
+    Raw out;
+    for (const auto v : last->vertices()) {
+        const auto p = last->point(v);
+        out.points.push_back({p[0], p[1], p[2]});
+    }
+    out.starts.push_back(0);
+    for (const auto f : last->faces()) {
+        for (auto it = last->cfv_ccwiter(f); it.is_valid(); ++it) out.corners.push_back(uint32_t(it->idx()));
+        out.starts.push_back(uint32_t(out.corners.size()));
+    }
+    write_raw(call.out + ".raw", out);
+}
+
+void subdivide(Report& report, const Raw& raw, const Call& call) {
+    namespace uniform = OpenMesh::Subdivider::Uniform;
+    if (call.scheme == "catmull-clark") refined<Polygons, uniform::CatmullClarkT<Polygons, double>>(report, raw, call);
+    else if (call.scheme == "loop") refined<Triangles, uniform::LoopT<Triangles, double>>(report, raw, call);
+    else if (call.scheme == "sqrt3") refined<Triangles, uniform::Sqrt3T<Triangles, double>>(report, raw, call);
+    else if (call.scheme == "butterfly")
+        refined<Triangles, uniform::ModifiedButterflyT<Triangles, double>>(report, raw, call);
+    else throw std::runtime_error("OpenMesh has no scheme " + call.scheme);
+}
+
 void read(Report& report, const Call& call) {
     double vertices = 0, faces = 0;
     report.time(call.repeat, [&] {
@@ -241,7 +288,8 @@ int main(int count, char** arguments) {
         else if (call.operation == "read-triangles") read_triangles(report, call);
         else {
             const Raw raw = read_raw(call.input);
-            if (raw.triangles()) run<Triangles>(report, call, raw);
+            if (call.operation == "subdivide") subdivide(report, raw, call);
+            else if (raw.triangles()) run<Triangles>(report, call, raw);
             else run<Polygons>(report, call, raw);
         }
         report.print();

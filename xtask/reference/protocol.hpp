@@ -1,6 +1,6 @@
 // What the reference drivers share: raw meshes, times, memory, and the one JSON object they print.
 //
-//   driver OPERATION INPUT [--repeat N] [--out FILE]
+//   driver OPERATION INPUT [--repeat N] [--out FILE] [--scheme NAME] [--levels N] [--tags FILE]
 //
 // A raw mesh is what xtask writes so that every program starts from the same bits: three 64-bit
 // counts (vertices, faces, corners), the coordinates as doubles, the start of each face and one end,
@@ -107,10 +107,17 @@ public:
     // destroyed outside the timed part.
     template <class Run>
     void time(int repeat, Run run) {
+        time_from(repeat, [] { return 0; }, [&](int) { return run(); });
+    }
+
+    // The same for what changes its input, which `start` makes anew outside the timed part.
+    template <class Start, class Run>
+    void time_from(int repeat, Start start, Run run) {
         std::vector<double> wall, cpu;
         for (int i = 0; i < repeat; ++i) {
+            auto&& state = start();
             const double w = Clock::wall(), c = Clock::cpu();
-            const auto result = run();
+            const auto result = run(state);
             wall.push_back(Clock::wall() - w);
             cpu.push_back(Clock::cpu() - c);
         }
@@ -178,11 +185,11 @@ private:
 };
 
 struct Call {
-    std::string operation, input, out;
-    int repeat = 1;
+    std::string operation, input, out, scheme, tags;
+    int repeat = 1, levels = 1;
 
     static Call parse(int count, char** arguments) {
-        if (count < 3) throw std::runtime_error("usage: OPERATION INPUT [--repeat N] [--out FILE]");
+        if (count < 3) throw std::runtime_error("usage: OPERATION INPUT [--repeat N] [--out FILE] …");
         Call call;
         call.operation = arguments[1];
         call.input = arguments[2];
@@ -190,6 +197,9 @@ struct Call {
             const std::string option = arguments[i];
             if (option == "--repeat") call.repeat = std::stoi(arguments[i + 1]);
             else if (option == "--out") call.out = arguments[i + 1];
+            else if (option == "--scheme") call.scheme = arguments[i + 1];
+            else if (option == "--levels") call.levels = std::stoi(arguments[i + 1]);
+            else if (option == "--tags") call.tags = arguments[i + 1];
             else throw std::runtime_error("unknown option " + option);
         }
         return call;

@@ -1,6 +1,8 @@
 //! One operation of ours in a process of its own, by the protocol of the reference drivers, so that
 //! time and memory of peers and of us are measured alike.
 
+pub(crate) mod subdivision;
+
 use std::{
     fs,
     hint::black_box,
@@ -32,23 +34,29 @@ struct Call {
     input: PathBuf,
     repeat: usize,
     out: PathBuf,
+    scheme: String,
+    levels: usize,
 }
 
 impl Call {
     fn parse(arguments: &[String]) -> Outcome<Call> {
         let [operation, input, options @ ..] = arguments else {
-            return Err("usage: drive OPERATION INPUT [--repeat N] [--out FILE]".into());
+            return Err("usage: drive OPERATION INPUT [--repeat N] [--out FILE] [--scheme NAME] [--levels N]".into());
         };
         let mut call = Call {
             operation: operation.clone(),
             input: input.into(),
             repeat: 1,
             out: PathBuf::new(),
+            scheme: String::new(),
+            levels: 1,
         };
         for pair in options.chunks(2) {
             match pair {
                 [name, value] if name == "--repeat" => call.repeat = value.parse()?,
                 [name, value] if name == "--out" => call.out = value.into(),
+                [name, value] if name == "--scheme" => call.scheme.clone_from(value),
+                [name, value] if name == "--levels" => call.levels = value.parse()?,
                 _ => return Err(format!("unknown option {}", pair[0]).into()),
             }
         }
@@ -121,6 +129,9 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
             let options =
                 RenderOptions { width: 1200, height: 900, samples: 2, ..RenderOptions::default() };
             time(report, call.repeat, || Ok(render(&scene, &options, Progress::NONE)?))
+        }
+        "subdivide" | "plan-refine" | "plan" | "refine" | "stencils" => {
+            subdivision::perform(call, report)
         }
         "read" => time(report, call.repeat, || built(&dgp_io::read(&call.input)?.set)),
         "parse" => time(report, call.repeat, || Ok(dgp_io::read(&call.input)?)),

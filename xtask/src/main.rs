@@ -6,7 +6,7 @@
 //! | `tidy` | layers, ledger, file forms, links |
 //! | `index` | writes docs/book/catalogue.md from docs/catalogue.toml |
 //! | `data` | unpacks the meshes of Debian's `libcgal-demo` under target/ |
-//! | `golden [--regenerate]` | compares our results with OpenMesh's and CGAL's |
+//! | `golden [--regenerate \| --refined]` | compares our results with those of the peers, or of subdivision only |
 //! | `bench [--quick] [--criterion]` | times peers and us in one run, writes target/bench/index.html |
 //! | `drive OPERATION INPUT …` | one measured operation in a process of its own |
 
@@ -51,4 +51,4 @@ fn run(arguments: &[String]) -> Outcome<()> {
     }
 }
 
-const USAGE: &str = "usage: cargo xtask ci | tidy | index | data | golden [--regenerate] | bench [--quick | --criterion]";
+const USAGE: &str = "usage: cargo xtask ci | tidy | index | data | golden [--regenerate | --refined] | bench [--quick | --criterion]";

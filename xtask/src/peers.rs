@@ -30,6 +30,9 @@ const PACKAGES: &str = "apt-get install -y --no-install-recommends g++ libopenme
 const CHOLMOD_PACKAGES: &str = "apt-get install -y --no-install-recommends libsuitesparse-dev \
                                 libmetis-dev libopenblas-dev";
 
+/// What the driver of OpenSubdiv needs.
+const OPENSUBDIV_PACKAGES: &str = "apt-get install -y --no-install-recommends libosd-dev";
+
 /// Which OpenMesh to link.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
@@ -57,6 +60,8 @@ pub(crate) struct Peers {
     pub(crate) cgal: Driver,
     /// Absent where its packages are.
     pub(crate) cholmod: Option<Driver>,
+    /// Absent where its package is.
+    pub(crate) opensubdiv: Option<Driver>,
     /// Only for speed; absent where Python or its packages are.
     pub(crate) scipy: Option<Driver>,
 }
@@ -102,6 +107,13 @@ impl Peers {
                 None
             }
         };
+        let opensubdiv = match opensubdiv(&folder) {
+            Ok(program) => Some(Driver::new("OpenSubdiv", program)),
+            Err(error) => {
+                eprintln!("without OpenSubdiv: {error}\nget it by\n  {OPENSUBDIV_PACKAGES}");
+                None
+            }
+        };
         // Where speed does not matter nothing is installed for it.
         let scipy = (wanted == Wanted::Optimized).then(|| scipy(&folder)).and_then(|driver| {
             driver.inspect_err(|error| eprintln!("without SciPy: {error}")).ok()
@@ -110,6 +122,7 @@ impl Peers {
             openmesh: Driver::new(openmesh.name, program),
             cgal: Driver::new("CGAL", cgal),
             cholmod,
+            opensubdiv,
             scipy,
         })
     }
@@ -117,9 +130,8 @@ impl Peers {
 
 impl fmt::Display for Peers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for driver in
-            [&self.openmesh, &self.cgal].into_iter().chain(&self.cholmod).chain(&self.scipy)
-        {
+        let optional = [&self.cholmod, &self.opensubdiv, &self.scipy].into_iter().flatten();
+        for driver in [&self.openmesh, &self.cgal].into_iter().chain(optional) {
             writeln!(f, "{}: {}", driver.name, driver.program.display())?;
         }
         Ok(())
@@ -196,6 +208,14 @@ fn cholmod(folder: &Path) -> Outcome<PathBuf> {
     let arguments =
         ["-I", include, "-lcholmod", "-lmetis", "-lopenblas"].map(String::from).to_vec();
     compile("cholmod", folder, &arguments)
+}
+
+/// The driver of OpenSubdiv.
+fn opensubdiv(folder: &Path) -> Outcome<PathBuf> {
+    if !Path::new("/usr/include/opensubdiv/far/primvarRefiner.h").exists() {
+        return Err("libosd-dev is not there".into());
+    }
+    compile("opensubdiv", folder, &["-losdCPU", "-fopenmp"].map(String::from))
 }
 
 /// What to link for OpenMesh.

@@ -1,6 +1,6 @@
 //! What can go wrong.
 
-use crate::{Cancelled, DefectReport, EdgeId, EditError, FaceId, NotManifold, VertexId};
+use crate::{Cancelled, CornerId, DefectReport, EdgeId, EditError, FaceId, NotManifold, VertexId};
 
 /// Why a function of this crate gave no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -50,6 +50,16 @@ pub enum Error {
         count: usize,
         /// How many there can be.
         limit: usize,
+    },
+
+    /// Half-edges that were given for corners are not those of a mesh.
+    #[error(
+        "{corner} is said to start a half-edge that is out of range, taken by another corner, or not \
+         opposite to its twin; join the faces without saying so"
+    )]
+    Unpaired {
+        /// The first such corner.
+        corner: CornerId,
     },
 
     /// The faces do not form an oriented manifold.

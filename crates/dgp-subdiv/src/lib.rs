@@ -40,6 +40,7 @@ mod plan;
 mod primal;
 mod ring;
 mod sharpness;
+mod smooth;
 mod split;
 pub mod sqrt3;
 mod stencil;

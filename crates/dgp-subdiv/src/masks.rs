@@ -109,7 +109,7 @@ fn apply_rows<T: Value>(masks: &dyn Masks, new: &mut [T], old: impl Fn(u32) -> T
     });
 }
 
-fn face_means<T: Value>(topology: &Topology, old: &[T], means: &mut [T]) {
+pub(crate) fn face_means<T: Value>(topology: &Topology, old: &[T], means: &mut [T]) {
     parallel::for_each_chunk(means, parallel::BLOCK, |first, chunk| {
         for (f, mean) in (first as u32..).zip(chunk) {
             let corners = topology.corners(f);

@@ -17,6 +17,7 @@ use crate::{
     options::BoundaryRule,
     primal::{Kind, Primal},
     sharpness::Creases,
+    smooth,
     split::{split_polygons, split_triangles},
     sqrt3::{self, Sqrt3},
     stencil::check_length,
@@ -166,7 +167,7 @@ impl RefinementPlan {
         let mut current = None;
         for step in 0..self.levels() {
             let old = current.as_deref().unwrap_or(values);
-            current = Some(self.with_masks(step, |masks| masks::apply(masks, old)));
+            current = Some(self.refined_values(step, old));
         }
         Ok(current.unwrap_or_else(|| values.to_vec()))
     }
@@ -184,7 +185,15 @@ impl RefinementPlan {
             values.len(),
             self.levels[step].topology.vertex_count(),
         )?;
-        Ok(self.with_masks(step, |masks| masks::apply(masks, values)))
+        Ok(self.refined_values(step, values))
+    }
+
+    fn refined_values<T: Value>(&self, step: usize, old: &[T]) -> Vec<T> {
+        let Level { topology, creases, .. } = &self.levels[step];
+        match Kind::of(self.options.scheme) {
+            Some(kind) if creases.is_empty() => smooth::refined(topology, kind, old),
+            _ => self.with_masks(step, |masks| masks::apply(masks, old)),
+        }
     }
 
     /// The stencils that lead from level `step` to the next. Error: [`Error::TooManyEntries`].
@@ -283,10 +292,11 @@ impl RefinementPlan {
         })
     }
 
-    /// The connectivity of the last level.
+    /// The connectivity of the last level. Edges have the numbers they have in the plan, which knows them.
     pub fn connectivity(&self) -> Result<Connectivity, Error> {
         let topology = &self.last().topology;
-        Ok(Connectivity::from_faces(topology.vertex_count(), &topology.faces())?)
+        let (vertices, halfedges) = (topology.vertex_count(), &topology.corner_halfedge);
+        Ok(Connectivity::from_paired_corners(vertices, &topology.faces(), halfedges)?)
     }
 
     pub(crate) fn last(&self) -> &Level {

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Valences whose masks are worked out once.
-const COMMON: usize = 16;
+pub(crate) const COMMON: usize = 16;
 
 /// A scheme that keeps its vertices and adds points on edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl Kind {
         }
     }
 
-    fn splits_polygons(self) -> bool {
+    pub(crate) fn splits_polygons(self) -> bool {
         !matches!(self, Kind::Loop(_))
     }
 }

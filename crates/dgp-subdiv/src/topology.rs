@@ -141,8 +141,11 @@ impl Topology {
     /// The preceding corner of the same face.
     #[inline]
     pub(crate) fn prev(&self, corner: u32) -> u32 {
-        if let Starts::Every(4) = self.starts {
-            return corner & !3 | corner.wrapping_sub(1) & 3;
+        match self.starts {
+            Starts::Every(4) => return corner & !3 | corner.wrapping_sub(1) & 3,
+            Starts::Every(3) if corner.is_multiple_of(3) => return corner + 2,
+            Starts::Every(3) => return corner - 1,
+            _ => {}
         }
         let corners = self.corners(self.face(corner));
         if corner == corners.start { corners.end - 1 } else { corner - 1 }

@@ -11,6 +11,10 @@ pub(super) struct Case {
     pub(super) cgal: Option<&'static str>,
     /// Orders for which CHOLMOD does the same.
     pub(super) cholmod: &'static [&'static str],
+    /// Operations by which OpenSubdiv does the same, and what to call each in tables.
+    pub(super) opensubdiv: &'static [(&'static str, &'static str)],
+    /// How cages are refined.
+    pub(super) scheme: Option<&'static str>,
     /// The operation for which SciPy does the same.
     pub(super) scipy: Option<&'static str>,
     /// Whether every driver gets one thread instead of all there are.
@@ -23,11 +27,20 @@ pub(super) struct Case {
     pub(super) figure: Figure,
 }
 
+/// What a cage is made of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cage {
+    Triangles,
+    Quads,
+}
+
 /// What the drivers are given.
 #[derive(Clone, Copy)]
 pub(super) enum Data {
     /// A raw mesh.
     Raw,
+    /// A raw mesh of triangles or of any faces that is to be refined.
+    Cage(Cage),
     /// A raw mesh with faces turned over.
     Soup,
     /// A file of this name.
@@ -56,6 +69,8 @@ pub(super) fn all() -> Vec<Case> {
         openmesh: Some(operation),
         cgal: Some(operation),
         cholmod: &[],
+        opensubdiv: &[],
+        scheme: None,
         scipy: None,
         one_thread: false,
         handles: false,
@@ -148,5 +163,84 @@ pub(super) fn all() -> Vec<Case> {
         let operation = if binary { "write-binary" } else { "write-ascii" };
         cases.push(Case { data: Data::Output(file), ..case(write, "mesh to file", operation) });
     }
+    subdivision(&mut cases);
     cases
+}
+
+/// Refinement of cages.
+fn subdivision(cases: &mut Vec<Case>) {
+    let case = |name, what, scheme, cage, ours| Case {
+        name,
+        what,
+        ours,
+        openmesh: None,
+        cgal: None,
+        cholmod: &[],
+        opensubdiv: &[],
+        scheme: Some(scheme),
+        scipy: None,
+        one_thread: false,
+        largest: usize::MAX,
+        data: Data::Cage(cage),
+        figure: Figure::Time,
+    };
+    let subdivide = "subdivide";
+    for (name, what, scheme, cage, openmesh, cgal) in [
+        ("subdivide-loop", "Loop, mesh to mesh", "loop", Cage::Triangles, true, true),
+        (
+            "subdivide-catmull-clark",
+            "Catmull–Clark, mesh to mesh",
+            "catmull-clark",
+            Cage::Quads,
+            true,
+            true,
+        ),
+        ("subdivide-sqrt3", "√3, mesh to mesh", "sqrt3", Cage::Triangles, true, true),
+        (
+            "subdivide-butterfly",
+            "modified Butterfly, mesh to mesh",
+            "butterfly",
+            Cage::Triangles,
+            true,
+            false,
+        ),
+        ("subdivide-doo-sabin", "Doo–Sabin, mesh to mesh", "doo-sabin", Cage::Quads, false, true),
+    ] {
+        cases.push(Case {
+            openmesh: openmesh.then_some(subdivide),
+            cgal: cgal.then_some(subdivide),
+            ..case(name, what, scheme, cage, subdivide)
+        });
+    }
+    for (scheme, cage, plan, refine, stencils) in [
+        ("loop", Cage::Triangles, "plan-loop", "refine-loop", "stencils-loop"),
+        (
+            "catmull-clark",
+            Cage::Quads,
+            "plan-catmull-clark",
+            "refine-catmull-clark",
+            "stencils-catmull-clark",
+        ),
+    ] {
+        let what = "indexed faces to the connectivity and the positions of all levels";
+        cases.push(Case {
+            opensubdiv: &[("plan-refine", "OpenSubdiv")],
+            ..case(plan, what, scheme, cage, "plan-refine")
+        });
+        cases.push(Case {
+            opensubdiv: &[
+                ("refine", "OpenSubdiv primvar refiner"),
+                ("stencils", "OpenSubdiv stencils"),
+                ("stencils-threads-32-bit", "OpenSubdiv stencils, threads, 32 bits"),
+            ],
+            ..case(refine, "positions again by a plan that is there", scheme, cage, "refine")
+        });
+        cases.push(Case {
+            opensubdiv: &[
+                ("stencils", "OpenSubdiv stencils"),
+                ("stencils-threads-32-bit", "OpenSubdiv stencils, threads, 32 bits"),
+            ],
+            ..case(stencils, "positions again by a table that is there", scheme, cage, "stencils")
+        });
+    }
 }

@@ -8,7 +8,7 @@ use std::{
 use dgp_io::{Document, Encoding, WriteOptions};
 use dgp_mesh::{FaceId, IndexedFaceSet, Progress, shapes};
 
-use super::Effort;
+use super::{Effort, cases::Cage};
 use crate::{raw, shell::Outcome};
 
 /// A mesh on disk.
@@ -23,6 +23,8 @@ pub(super) struct Input {
     pub(super) handles: bool,
     /// The folder with the mesh in every format, if it was written.
     pub(super) files: Option<PathBuf>,
+    /// What it is made of and how often it is to be refined, if it is for that.
+    pub(super) cage: Option<(Cage, usize)>,
 }
 
 /// Writes the inputs for this effort.
@@ -61,6 +63,7 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
             soup,
             handles: false,
             files: Some(place),
+            cage: None,
         });
         if let Some(set) = shuffled {
             let path = folder.join(format!("{name}-shuffled.raw"));
@@ -74,6 +77,7 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
                 soup,
                 handles: false,
                 files: None,
+                cage: None,
             });
         }
     }
@@ -90,8 +94,44 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
         raw: path,
         handles: true,
         files: None,
+        cage: None,
     });
+    cages(effort, folder, &mut inputs)?;
     Ok(inputs)
+}
+
+/// Cages to be refined to a million faces and to several: few levels of many faces, many of few. The
+/// faces are those after splits in four.
+fn cages(effort: Effort, folder: &Path, inputs: &mut Vec<Input>) -> Outcome<()> {
+    // Levels of the sphere of triangles, cuts of that of quadrilaterals, how often to refine.
+    let sizes: &[(usize, usize, usize)] = match effort {
+        Effort::Quick => &[(1, 3, 2)],
+        Effort::Full => &[(8, 448, 1), (7, 224, 1), (5, 56, 4), (3, 14, 5), (2, 7, 7)],
+    };
+    for &(level, cuts, levels) in sizes {
+        for (cage, mesh) in [
+            (Cage::Triangles, shapes::icosphere(level)?),
+            (Cage::Quads, shapes::quad_sphere(cuts)?),
+        ] {
+            let set = shapes::with_noise(mesh, 0.05, 3)?.to_indexed();
+            let kind = if cage == Cage::Triangles { "triangles" } else { "quads" };
+            let name = format!("{} {kind}, {levels}×", set.face_count());
+            let raw = folder.join(format!("cage-{kind}-{levels}-{}.raw", set.face_count()));
+            raw::write(&raw, &set)?;
+            let triangles = set.face_count() << (2 * levels);
+            let cage = Some((cage, levels));
+            inputs.push(Input {
+                name,
+                triangles,
+                soup: raw.clone(),
+                raw,
+                handles: false,
+                files: None,
+                cage,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Every hundredth face turned over.

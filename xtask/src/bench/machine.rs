@@ -30,5 +30,6 @@ pub(super) fn describe(openmesh: &str) -> Outcome<Value> {
         "OpenMesh": openmesh,
         "libopenmesh-dev": text("dpkg-query", &["-W", "-f=${Version}", "libopenmesh-dev"]),
         "libcgal-dev": text("dpkg-query", &["-W", "-f=${Version}", "libcgal-dev"]),
+        "libosd-dev": text("dpkg-query", &["-W", "-f=${Version}", "libosd-dev"]),
     }))
 }

@@ -46,7 +46,12 @@ pub(super) fn case(
     if input.triangles > case.largest || (input.handles && !case.handles) {
         return None;
     }
+    let is_cage = matches!((case.data, input.cage), (Data::Cage(a), Some((b, _))) if a == b);
+    if is_cage != (input.cage.is_some() || matches!(case.data, Data::Cage(_))) {
+        return None;
+    }
     let (path, out) = match (case.data, &input.files) {
+        (Data::Cage(_), _) => (input.raw.clone(), None),
         (Data::Soup, _) => (input.soup.clone(), None),
         (Data::Raw, _) => (input.raw.clone(), None),
         (Data::File(name), Some(files)) => (files.join(name), None),
@@ -62,6 +67,10 @@ pub(super) fn case(
                 .iter()
                 .map(|&order| (cholmod.named(format!("{} {order}", cholmod.name)), order)),
         );
+    }
+    if let Some(opensubdiv) = &peers.opensubdiv {
+        let named = |&(operation, name): &(_, &str)| (opensubdiv.named(name.into()), operation);
+        drivers.extend(case.opensubdiv.iter().map(named));
     }
     if let (Some(scipy), Some(operation)) = (&peers.scipy, case.scipy) {
         drivers.push((scipy.clone(), operation));
@@ -81,11 +90,15 @@ pub(super) fn case(
         Effort::Full if input.triangles > 1_000_000 => (3, "2"),
         Effort::Full => (5, "3"),
     };
+    let levels = input.cage.map(|(_, levels)| levels.to_string());
     let mut series: Vec<Series> = drivers.iter().map(|_| Series::default()).collect();
     let mut failures = BTreeMap::new();
     for _ in 0..rounds {
         for ((driver, operation), series) in drivers.iter().zip(&mut series) {
             let mut options = vec!["--repeat", repeat];
+            if let (Some(scheme), Some(levels)) = (case.scheme, &levels) {
+                options.extend(["--scheme", scheme, "--levels", levels]);
+            }
             let out = out.as_ref().map(|path| path.to_string_lossy().into_owned());
             options.extend(out.iter().flat_map(|path| ["--out", path.as_str()]));
             match driver.call(operation, &path, &options) {

@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 26] = [
+pub(crate) const QUANTITIES: [(&str, &str); 34] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -43,6 +43,14 @@ pub(crate) const QUANTITIES: [(&str, &str); 26] = [
     ("repaired_boundary", "equal sizes"),
     ("repaired_components", "equal"),
     ("repaired_orientation", "equal up to turning a component over"),
+    ("refined_loop", "1e-12 · largest coordinate"),
+    ("refined_catmull_clark", "1e-12 · largest coordinate"),
+    ("refined_sqrt3", "1e-12 · largest coordinate"),
+    ("refined_butterfly", "1e-12 · largest coordinate"),
+    ("refined_doo_sabin", "1e-12 · largest coordinate"),
+    ("limits_loop", "1e-12 · largest coordinate"),
+    ("limits_catmull_clark", "1e-12 · largest coordinate"),
+    ("limit_normals", "1e-12 · condition"),
 ];
 
 /// How one quantity of one input compares.

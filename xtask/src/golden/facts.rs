@@ -152,7 +152,20 @@ impl Facts {
         input: &Path,
         prefix: &Path,
     ) -> Outcome<()> {
-        let answer = driver.call(operation, input, &["--out", &prefix.to_string_lossy()])?;
+        self.add_with(driver, operation, input, prefix, &[])
+    }
+
+    /// The same with more options.
+    pub(crate) fn add_with(
+        &mut self,
+        driver: &Driver,
+        operation: &str,
+        input: &Path,
+        prefix: &Path,
+        options: &[&str],
+    ) -> Outcome<()> {
+        let out = prefix.to_string_lossy();
+        let answer = driver.call(operation, input, &[&["--out", &out], options].concat())?;
         let measured = ["ms", "cpu_ms", "peak_bytes"];
         let values = answer.as_object().cloned().unwrap_or_default();
         self.values

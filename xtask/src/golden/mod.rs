@@ -1,4 +1,4 @@
-//! Our results against OpenMesh's and CGAL's, on the same bits.
+//! Our results against OpenMesh's, CGAL's and OpenSubdiv's, on the same bits.
 //!
 //! Every input is written as a raw mesh, each peer answers in a process of its own, and every number is
 //! compared with its tolerance. docs/book/golden.md names the differences of convention.
@@ -7,6 +7,7 @@ mod compare;
 mod estimates;
 mod facts;
 mod inputs;
+mod refined;
 mod stored;
 mod table;
 
@@ -28,8 +29,15 @@ use table::Table;
 pub(crate) fn run(options: &[String]) -> Outcome<()> {
     let regenerate = match options {
         [] => false,
+        [option] if option == "--refined" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            refined::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--regenerate" => true,
-        _ => return Err("usage: golden [--regenerate]".into()),
+        _ => return Err("usage: golden [--regenerate | --refined]".into()),
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;
@@ -48,6 +56,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
         answers(&peers, &folder, &input, &mut table)?;
     }
     estimates::compare(&peers, &folder, &mut table)?;
+    refined::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

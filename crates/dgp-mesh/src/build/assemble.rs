@@ -35,7 +35,7 @@ pub(crate) fn assemble(
 }
 
 /// Refuses faces of fewer than three corners and faces that visit a vertex twice.
-fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
+pub(super) fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
     if faces.uniform_degree() == Some(3) {
         let mut triangles = faces.corners().as_chunks::<3>().0.iter();
         let bad = triangles.position(|&[a, b, c]| a == b || b == c || c == a);
@@ -45,6 +45,7 @@ fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
         let mut sorted = Vec::new();
         block.map(FaceId::new).find(|&f| match *faces.face(f) {
             [a, b, c] => a == b || b == c || c == a,
+            [a, b, c, d] => a == b || a == c || a == d || b == c || b == d || c == d,
             [] | [_] | [_, _] => true,
             ref vertices => {
                 sorted.clear();
@@ -352,7 +353,10 @@ fn link(
 }
 
 /// Chains the half-edges without a face around each hole, and lets boundary vertices start with them.
-fn link_holes(connectivity: &mut Connectivity, holes: &[HalfedgeId]) -> Result<(), NotManifold> {
+pub(super) fn link_holes(
+    connectivity: &mut Connectivity,
+    holes: &[HalfedgeId],
+) -> Result<(), NotManifold> {
     let Connectivity { prev, to, face, vertex_halfedge, .. } = connectivity;
     for &h in holes {
         let vertex = to[h.twin()];
@@ -377,7 +381,7 @@ fn link_holes(connectivity: &mut Connectivity, holes: &[HalfedgeId]) -> Result<(
 ///
 /// Every half-edge is in just one orbit around the vertex it leaves. Walking one orbit per vertex
 /// meets all of them if and only if no vertex has a second orbit.
-fn check_fans(connectivity: &Connectivity) -> Result<(), NotManifold> {
+pub(super) fn check_fans(connectivity: &Connectivity) -> Result<(), NotManifold> {
     let valence = |v: VertexId| connectivity.valence(v);
     let met = parallel::map_blocks(connectivity.vertex_count(), parallel::BLOCK, |block| {
         let starts = connectivity.vertex_halfedge.values()[block].iter().flatten();

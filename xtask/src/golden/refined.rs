@@ -1,0 +1,361 @@
+//! Refined meshes beside those of OpenMesh, CGAL and OpenSubdiv: vertices are matched by position, then
+//! faces must be the same lists of them.
+//!
+//! Where a peer has another rule at rims of holes, and docs/book/golden.md names it, what no face near a
+//! rim has a part in must still be the same.
+
+use std::{fmt::Write, fs, path::Path};
+
+use dgp_mesh::{DVec3, FaceId, FaceList, IndexedFaceSet, Mesh, Progress, VertexId, shapes};
+use dgp_subdiv::{BoundaryRule, RefinementOptions, RefinementPlan, SHARP, Sharpness};
+
+use super::{
+    Facts, Table, Verdict,
+    compare::{Comparison, TOLERANCE},
+};
+use crate::{
+    drive::subdivision::scheme,
+    peers::{Driver, Peers},
+    raw,
+    shell::Outcome,
+};
+
+/// How far apart two vertices may be to be looked at as the same, of the largest coordinate.
+const REACH: f64 = 1e-9;
+
+/// The rules of peers that differ at rims, by peer and scheme; docs/book/golden.md explains them.
+const OTHER_RIMS: [(&str, &str); 0] = [];
+
+/// A cage with what is sharp in it.
+struct Cage {
+    name: String,
+    mesh: Mesh,
+    sharpness: Sharpness,
+    boundary: BoundaryRule,
+}
+
+fn meshes(quads: bool) -> Outcome<Vec<(&'static str, Mesh)>> {
+    let shapes = if quads {
+        vec![
+            ("cube", shapes::cube()),
+            ("dodecahedron", shapes::dodecahedron()),
+            ("football", shapes::truncated_icosahedron()),
+            ("quad-torus", shapes::quad_torus(2.0, 0.5, 7, 5)?),
+            ("quads-of-genus-2", shapes::quad_surface_of_genus(2, 1)?),
+            ("quad-grid", shapes::quad_grid(8, 7)?),
+            ("capped-cylinder", shapes::capped_cylinder(1.0, 2.0, 5, 2)?),
+        ]
+    } else {
+        vec![
+            ("tetrahedron", shapes::tetrahedron()),
+            ("octahedron", shapes::octahedron()),
+            ("icosphere", shapes::icosphere(1)?),
+            ("torus", shapes::torus(2.0, 0.5, 7, 5)?),
+            ("cone", shapes::capped_cone(1.0, 2.0, 9, 2)?),
+            ("grid", shapes::grid(8, 7)?),
+            ("annulus", shapes::annulus(0.4, 1.0, 9, 6)?),
+            ("holed-sphere", shapes::with_holes(&shapes::icosphere(2)?, 2, 1, 3)?),
+        ]
+    };
+    // Noise, so that no two vertices are where another is.
+    let noisy = shapes.into_iter().zip(1..);
+    noisy.map(|((name, mesh), seed)| Ok((name, shapes::with_noise(mesh, 0.05, seed)?))).collect()
+}
+
+/// Compares all schemes on all cages with all peers that have them, and notes it in the table.
+pub(super) fn compare(peers: &Peers, folder: &Path, table: &mut Table) -> Outcome<()> {
+    let schemes: [(&str, bool, &[(&str, &Driver)]); 5] = [
+        ("loop", false, &[("OpenMesh", &peers.openmesh), ("CGAL", &peers.cgal)]),
+        ("catmull-clark", true, &[("OpenMesh", &peers.openmesh), ("CGAL", &peers.cgal)]),
+        ("sqrt3", false, &[("OpenMesh", &peers.openmesh), ("CGAL", &peers.cgal)]),
+        ("butterfly", false, &[("OpenMesh", &peers.openmesh)]),
+        ("doo-sabin", true, &[("CGAL", &peers.cgal)]),
+    ];
+    for (name, quads, drivers) in schemes {
+        let mut cages = meshes(quads)?;
+        if quads {
+            cages.extend(meshes(false)?);
+        }
+        for (shape, mesh) in cages {
+            let cage = Cage {
+                name: shape.into(),
+                mesh,
+                sharpness: Sharpness::new(),
+                boundary: BoundaryRule::EdgeOnly,
+            };
+            for levels in 1..=3 {
+                for (peer, driver) in drivers {
+                    cage.compare(name, levels, (peer, driver), folder, table)?;
+                }
+            }
+        }
+    }
+    let Some(driver) = &peers.opensubdiv else { return Ok(()) };
+    for (name, quads) in [("loop", false), ("catmull-clark", true)] {
+        let mut cages = meshes(quads)?;
+        if quads {
+            cages.extend(meshes(false)?);
+        }
+        for (shape, mesh) in cages {
+            for (kind, boundary) in
+                [("edge", BoundaryRule::EdgeOnly), ("corner", BoundaryRule::EdgeAndCorner)]
+            {
+                for sharpness in [Sharpness::new(), some_sharpness(&mesh)] {
+                    let tags = if sharpness.is_smooth() { "smooth" } else { "creased" };
+                    let name_of = format!("{shape}-{kind}-{tags}");
+                    let cage = Cage { name: name_of, mesh: mesh.clone(), sharpness, boundary };
+                    for levels in 1..=4 {
+                        cage.compare(name, levels, ("OpenSubdiv", driver), folder, table)?;
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Every rule somewhere; all values are exact in 32 bits, which OpenSubdiv keeps them in.
+fn some_sharpness(mesh: &Mesh) -> Sharpness {
+    let mut sharpness = Sharpness::new();
+    let values = [0.0, 0.25, 1.0, 1.75, SHARP, 0.0, 2.5, 0.0, 0.0];
+    for e in mesh.edges() {
+        sharpness.set_edge(e, values[e.index() % values.len()]);
+    }
+    sharpness.set_vertex(VertexId::new(1), 0.625);
+    sharpness.set_vertex(VertexId::new(2), SHARP);
+    sharpness
+}
+
+/// After how many levels `some_sharpness` has worn off; limits of OpenSubdiv take for granted that it has.
+const WORN_OFF: usize = 3;
+
+impl Cage {
+    fn compare(
+        &self,
+        name: &str,
+        levels: usize,
+        (peer, driver): (&str, &Driver),
+        folder: &Path,
+        table: &mut Table,
+    ) -> Outcome<()> {
+        let quantity = format!("refined_{}", name.replace('-', "_"));
+        let label = format!("{}, {levels} levels", self.name);
+        let path = folder.join("cage.raw");
+        raw::write(&path, &self.mesh.to_indexed())?;
+        let tags = folder.join("cage.tags");
+        fs::write(&tags, self.tags()?)?;
+        let prefix = folder.join("refined");
+        let (count, tag_file) = (levels.to_string(), tags.to_string_lossy());
+        let options = ["--scheme", name, "--levels", &count, "--tags", &tag_file];
+        let mut facts = Facts::default();
+        if let Err(error) = facts.add_with(driver, "subdivide", &path, &prefix, &options) {
+            let verdict = Verdict::Differs(format!("no answer: {error}"));
+            table.add(&label, peer, vec![Comparison::without_number(&quantity, verdict)]);
+            return Ok(());
+        }
+        let written = folder.join("refined.raw");
+        let theirs = raw::read(&written)?;
+        for file in [&path, &tags, &written] {
+            fs::remove_file(file)?;
+        }
+
+        let scheme = scheme(name)?;
+        let options = RefinementOptions {
+            scheme,
+            levels,
+            boundary: self.boundary,
+            ..RefinementOptions::default()
+        };
+        let plan = RefinementPlan::new(&self.mesh, &self.sharpness, &options, Progress::NONE)?;
+        let positions = plan.refine(self.mesh.positions().values())?;
+        let faces = listed(&plan.faces(levels));
+        let matching = Matching::new(&positions, &theirs);
+        let mut verdict = matching.verdict(&faces, &theirs);
+        if verdict != Verdict::Same
+            && OTHER_RIMS.contains(&(peer, name))
+            && let Some(inside) = self.inside(&plan)
+            && inside.iter().all(|&v| matching.partner[v].is_some())
+        {
+            verdict = Verdict::Convention("rims");
+        }
+        let worst = matching.worst / TOLERANCE;
+        let mut comparisons = vec![Comparison {
+            quantity,
+            compared: 3 * positions.len(),
+            left_out: 0,
+            worst,
+            verdict: verdict.clone(),
+        }];
+        let settled = self.sharpness.is_smooth() || levels >= WORN_OFF;
+        if peer == "OpenSubdiv" && verdict == Verdict::Same && settled {
+            let with_normals = self.sharpness.is_smooth();
+            comparisons.extend(limits(name, &plan, &positions, &matching, &facts, with_normals)?);
+        }
+        table.add(&label, peer, comparisons);
+        Ok(())
+    }
+
+    fn tags(&self) -> Outcome<String> {
+        let mut text = String::from(match self.boundary {
+            BoundaryRule::None => "boundary none\n",
+            BoundaryRule::EdgeOnly => "boundary edge\n",
+            BoundaryRule::EdgeAndCorner => "boundary corner\n",
+        });
+        for e in self.mesh.edges().filter(|&e| self.sharpness.edge(e) > 0.0) {
+            let [a, b] = self.mesh.edge_vertices(e);
+            writeln!(text, "crease {} {} {}", a.index(), b.index(), self.sharpness.edge(e))?;
+        }
+        for v in self.mesh.vertices().filter(|&v| self.sharpness.vertex(v) > 0.0) {
+            writeln!(text, "corner {} {}", v.index(), self.sharpness.vertex(v))?;
+        }
+        Ok(text)
+    }
+
+    /// The vertices of the last level that are only in faces of faces of the cage two rings away from
+    /// rims; `None` if the cage has no rims or nothing is as far away.
+    fn inside(&self, plan: &RefinementPlan) -> Option<Vec<usize>> {
+        let mesh = &self.mesh;
+        let mut near = mesh.map_vertices(|v| mesh.is_boundary_vertex(v));
+        for _ in 0..2 {
+            near = mesh.map_vertices(|v| near[v] || mesh.vertex_neighbors(v).any(|w| near[w]));
+        }
+        let outer = mesh.map_faces(|f| mesh.face_vertices(f).any(|v| near[v]));
+        let cage_faces = plan.cage_faces();
+        let mut is_inside = vec![true; plan.counts(plan.levels()).vertices as usize];
+        for (f, face) in plan.faces(plan.levels()).iter() {
+            if outer[cage_faces[f]] {
+                face.iter().for_each(|v| is_inside[v.index()] = false);
+            }
+        }
+        let inside: Vec<usize> = (0..is_inside.len()).filter(|&v| is_inside[v]).collect();
+        let has_rims = mesh.vertices().any(|v| mesh.is_boundary_vertex(v));
+        (has_rims && !inside.is_empty()).then_some(inside)
+    }
+}
+
+/// The faces of the last level as plain indices.
+fn listed(faces: &FaceList) -> Vec<Vec<usize>> {
+    let ids = (0..faces.len()).map(FaceId::new);
+    ids.map(|f| faces.face(f).iter().map(|v| v.index()).collect()).collect()
+}
+
+/// Which vertex of theirs is where one of ours is.
+struct Matching {
+    partner: Vec<Option<usize>>,
+    /// The largest distance, of the largest coordinate.
+    worst: f64,
+}
+
+impl Matching {
+    fn new(ours: &[DVec3], theirs: &IndexedFaceSet) -> Self {
+        let theirs = theirs.positions().values();
+        let mut order: Vec<usize> = (0..theirs.len()).collect();
+        order.sort_by(|&a, &b| theirs[a].x.total_cmp(&theirs[b].x));
+        let size = ours.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let reach = REACH * size;
+        let (mut worst, mut is_taken) = (0.0_f64, vec![false; theirs.len()]);
+        let partner = ours.iter().map(|p| {
+            let start = order.partition_point(|&w| theirs[w].x < p.x - reach);
+            let near = order[start..].iter().take_while(|&&w| theirs[w].x <= p.x + reach);
+            let distance = |w: usize| theirs[w].distance(*p);
+            let found = near.min_by(|&&a, &&b| distance(a).total_cmp(&distance(b)));
+            let found = *found.filter(|&&w| distance(w) <= reach && !is_taken[w])?;
+            is_taken[found] = true;
+            worst = worst.max(distance(found) / size);
+            Some(found)
+        });
+        let partner = partner.collect();
+        Matching { partner, worst }
+    }
+
+    fn verdict(&self, ours: &[Vec<usize>], theirs: &IndexedFaceSet) -> Verdict {
+        let [mine, other] = [self.partner.len(), theirs.vertex_count()];
+        if mine != other || ours.len() != theirs.face_count() {
+            let (faces, count) = (ours.len(), theirs.face_count());
+            return Verdict::Differs(format!(
+                "{mine} vertices and {faces} faces instead of {other} and {count}"
+            ));
+        }
+        let alone = self.partner.iter().filter(|partner| partner.is_none()).count();
+        if alone > 0 {
+            return Verdict::Differs(format!("{alone} of {mine} vertices are elsewhere"));
+        }
+        if self.worst > TOLERANCE {
+            return Verdict::Differs(format!("vertices are off by {:e}", self.worst));
+        }
+        let named = |face: &Vec<usize>| -> Vec<usize> {
+            face.iter().filter_map(|&v| self.partner[v]).collect()
+        };
+        let sorted = |faces: Vec<Vec<usize>>| {
+            let mut faces: Vec<Vec<usize>> = faces.into_iter().map(rotated).collect();
+            faces.sort_unstable();
+            faces
+        };
+        if sorted(ours.iter().map(named).collect()) == sorted(raw::faces(theirs)) {
+            Verdict::Same
+        } else {
+            Verdict::Differs("faces join other vertices".into())
+        }
+    }
+}
+
+/// The face from its smallest vertex on.
+fn rotated(mut face: Vec<usize>) -> Vec<usize> {
+    let least = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
+    face.rotate_left(least);
+    face
+}
+
+/// Limit positions, and normals where the tangents span a plane. At creases each side has its own and
+/// OpenSubdiv may choose another than we: `with_normals` only where nothing is sharp.
+fn limits(
+    name: &str,
+    plan: &RefinementPlan,
+    refined: &[DVec3],
+    matching: &Matching,
+    facts: &Facts,
+    with_normals: bool,
+) -> Outcome<Vec<Comparison>> {
+    let column = |name: &str| -> Outcome<Vec<DVec3>> {
+        let numbers = facts.columns.get(name).ok_or("OpenSubdiv told no limits")?;
+        Ok(numbers.chunks_exact(3).map(DVec3::from_slice).collect())
+    };
+    let (theirs, first, second) = (column("limits")?, column("tangents_1")?, column("tangents_2")?);
+    let ours = plan.limit(refined)?;
+    let [u, v] = plan.limit_tangents(refined)?;
+    let size = ours.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let partner = |i: usize| matching.partner[i].unwrap_or(i);
+    let (mut worst, mut turned) = (0.0_f64, 0.0_f64);
+    let (mut normals, mut left_out) = (0, 0);
+    for i in 0..ours.len() {
+        let j = partner(i);
+        worst = worst.max(ours[i].distance(theirs[j]) / size);
+        let [mine, other] = [u[i].cross(v[i]), first[j].cross(second[j])];
+        let flatness = |n: DVec3, a: DVec3, b: DVec3| n.length() / (a.length() * b.length());
+        // Tangents that fall together, as where a rim has a single face, span no plane.
+        let flat = flatness(mine, u[i], v[i]).min(flatness(other, first[j], second[j]));
+        if !with_normals || flat.is_nan() || flat <= 1e-3 {
+            left_out += 1;
+            continue;
+        }
+        normals += 1;
+        turned = turned.max(mine.normalize().distance(other.normalize()) * flat);
+    }
+    let judge = |quantity: String, worst: f64, compared, left_out| Comparison {
+        quantity,
+        compared,
+        left_out,
+        worst: worst / TOLERANCE,
+        verdict: if worst <= TOLERANCE {
+            Verdict::Same
+        } else {
+            Verdict::Differs(format!("off by {worst:e}"))
+        },
+    };
+    let mut all =
+        vec![judge(format!("limits_{}", name.replace('-', "_")), worst, 3 * ours.len(), 0)];
+    if with_normals {
+        all.push(judge("limit_normals".into(), turned, normals, left_out));
+    }
+    Ok(all)
+}
