@@ -90,7 +90,7 @@ impl Creasing {
         match (self.boundary, rules.boundary) {
             (Some(BoundaryName::None), _) | (None, Some(0)) => BoundaryRule::None,
             (Some(BoundaryName::Corners), _) | (None, Some(1)) => BoundaryRule::EdgeAndCorner,
-            (Some(BoundaryName::Smooth), _) | (None, _) => BoundaryRule::EdgeOnly,
+            (Some(BoundaryName::Smooth) | None, _) => BoundaryRule::EdgeOnly,
         }
     }
 }

@@ -174,7 +174,9 @@ mod tests {
         let (_, halfedges) = assemble(4, &faces).unwrap();
         let with = |changes: &[(usize, u32)]| {
             let mut changed = halfedges.clone();
-            changes.iter().for_each(|&(c, h)| changed[c] = h);
+            for &(c, h) in changes {
+                changed[c] = h;
+            }
             paired(4, &faces, &changed)
         };
         assert!(with(&[]).is_ok());

@@ -162,18 +162,19 @@ mod tests {
     use super::*;
     use crate::{measure::volume, topology};
 
+    /// All corners of the cell that are reached in the solid, each from one with fewer steps.
+    fn chains(grid: &Grid, steps: [usize; 3], p: usize, taken: usize) -> i64 {
+        let further = (taken + 1..8).filter(|next| next & taken == taken).map(|next| {
+            let q = p + (0..3).filter(|k| next >> k & 1 == 1).map(|k| steps[k]).sum::<usize>();
+            if grid.values[q] < 0.0 { -chains(grid, steps, p, next) } else { 0 }
+        });
+        1 + further.sum::<i64>()
+    }
+
     /// Points less edges plus triangles less tetrahedra of the solid: a boundary has twice that of what it bounds.
     fn euler_characteristic(grid: &Grid) -> i64 {
         let n = grid.n;
         let steps = [1, n, n * n];
-        // All corners of the cell that are reached in the solid, each from one with fewer steps.
-        fn chains(grid: &Grid, steps: [usize; 3], p: usize, taken: usize) -> i64 {
-            let further = (taken + 1..8).filter(|next| next & taken == taken).map(|next| {
-                let q = p + (0..3).filter(|k| next >> k & 1 == 1).map(|k| steps[k]).sum::<usize>();
-                if grid.values[q] < 0.0 { -chains(grid, steps, p, next) } else { 0 }
-            });
-            1 + further.sum::<i64>()
-        }
         // What is solid ends before the last points.
         (0..grid.values.len())
             .filter(|&p| grid.values[p] < 0.0)
