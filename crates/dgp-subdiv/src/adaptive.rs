@@ -262,6 +262,9 @@ impl Patch {
         level: usize,
     ) -> Result<Vec<f64>, Error> {
         let leaves: Vec<u32> = (0..self.leaves as u32).collect();
+        if leaves.is_empty() {
+            return Ok(Vec::new());
+        }
         let Part { topology: part, creases, values, .. } = self.part(&leaves, kind);
         let topology = match kind {
             Kind::Loop(_) => split_triangles(&part),
