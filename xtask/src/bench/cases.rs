@@ -180,6 +180,7 @@ fn subdivision(cases: &mut Vec<Case>) {
         scheme: Some(scheme),
         scipy: None,
         one_thread: false,
+        handles: false,
         largest: usize::MAX,
         data: Data::Cage(cage),
         figure: Figure::Time,
