@@ -60,9 +60,9 @@ pub(super) enum Figure {
     Bytes(&'static str),
 }
 
-/// All cases, in the order of the tables.
-pub(super) fn all() -> Vec<Case> {
-    let case = |name, what, operation| Case {
+/// `operation` on raw meshes, ours beside OpenMesh and CGAL.
+fn case(name: &'static str, what: &'static str, operation: &'static str) -> Case {
+    Case {
         name,
         what,
         ours: operation,
@@ -77,7 +77,11 @@ pub(super) fn all() -> Vec<Case> {
         largest: usize::MAX,
         data: Data::Raw,
         figure: Figure::Time,
-    };
+    }
+}
+
+/// All cases, in the order of the tables.
+pub(super) fn all() -> Vec<Case> {
     let mut cases = vec![
         case("build", "half-edges from indexed triangles", "build"),
         Case {
@@ -148,6 +152,13 @@ pub(super) fn all() -> Vec<Case> {
             ..case(name, what, name)
         });
     }
+    files(&mut cases);
+    subdivision(&mut cases);
+    cases
+}
+
+/// Reading and writing in each format.
+fn files(cases: &mut Vec<Case>) {
     for (read, write, file, binary) in [
         ("read-obj", "write-obj", "mesh.obj", false),
         ("read-ply", "write-ply", "mesh.ply", true),
@@ -163,8 +174,6 @@ pub(super) fn all() -> Vec<Case> {
         let operation = if binary { "write-binary" } else { "write-ascii" };
         cases.push(Case { data: Data::Output(file), ..case(write, "mesh to file", operation) });
     }
-    subdivision(&mut cases);
-    cases
 }
 
 /// Refinement of cages.

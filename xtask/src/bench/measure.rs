@@ -51,9 +51,8 @@ pub(super) fn case(
         return None;
     }
     let (path, out) = match (case.data, &input.files) {
-        (Data::Cage(_), _) => (input.raw.clone(), None),
         (Data::Soup, _) => (input.soup.clone(), None),
-        (Data::Raw, _) => (input.raw.clone(), None),
+        (Data::Raw | Data::Cage(_), _) => (input.raw.clone(), None),
         (Data::File(name), Some(files)) => (files.join(name), None),
         (Data::Output(name), Some(_)) => (input.raw.clone(), Some(folder.join(name))),
         (_, None) => return None,

@@ -1,8 +1,8 @@
 //! What holds for every scheme on every cage, and analytic values.
 
 use dgp_mesh::{
-    Connectivity, DMat3, DVec3, EdgeId, FaceList, IndexedFaceSet, Mesh, Progress, VertexId, shapes,
-    topology::euler_characteristic,
+    Connectivity, DMat3, DVec3, EdgeId, FaceList, HalfedgeId, IndexedFaceSet, Mesh, Progress,
+    VertexId, shapes, topology::euler_characteristic,
 };
 use dgp_subdiv::{
     BoundaryRule, ButterflyRule, LoopWeights, RefinementOptions, RefinementPlan, SHARP, Scheme,
@@ -249,7 +249,7 @@ fn limit_kinds() -> [Scheme; 2] {
 /// ```
 fn slowest(mesh: &Mesh, scheme: Scheme, sharpness: &Sharpness) -> f64 {
     let of_vertex = |v: VertexId| {
-        let around = mesh.vertex_halfedges(v).map(|h| h.edge());
+        let around = mesh.vertex_halfedges(v).map(HalfedgeId::edge);
         let is_sharp = |e: &EdgeId| mesh.is_boundary_edge(*e) || sharpness.edge(*e) >= SHARP;
         match around.filter(is_sharp).count() {
             0 => ring_factor(scheme, mesh.valence(v), false),
@@ -268,7 +268,9 @@ fn ring_factor(scheme: Scheme, d: usize, dart: bool) -> f64 {
     let size = if quads { 2 * d + 1 } else { d + 1 };
     let mut matrix = vec![vec![0.0; size]; size];
     let add = |matrix: &mut Vec<Vec<f64>>, row: usize, parts: &[(usize, f64)]| {
-        parts.iter().for_each(|&(column, weight)| matrix[row][column] += weight);
+        for &(column, weight) in parts {
+            matrix[row][column] += weight;
+        }
     };
     let (spoke, n) = (|i: usize| 1 + i % d, d as f64);
     let face = |i: usize, weight: f64| {
