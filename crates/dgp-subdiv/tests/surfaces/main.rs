@@ -3,4 +3,5 @@
 mod adaptive;
 mod data;
 mod identities;
+mod limit;
 mod reference;
