@@ -256,7 +256,12 @@ impl Cage {
                 Verdict::Differs(format!("off by {worst:e}"))
             },
         };
-        let mut all = vec![judge(format!("limits_{}", name.replace('-', "_")), worst, 3 * (ours.len() - darts), darts)];
+        let mut all = vec![judge(
+            format!("limits_{}", name.replace('-', "_")),
+            worst,
+            3 * (ours.len() - darts),
+            darts,
+        )];
         if self.sharpness.is_smooth() {
             all.push(judge("limit_normals".into(), turned, normals, ours.len() - normals));
         }

@@ -353,7 +353,10 @@ fn link(
 }
 
 /// Chains the half-edges without a face around each hole, and lets boundary vertices start with them.
-pub(super) fn link_holes(connectivity: &mut Connectivity, holes: &[HalfedgeId]) -> Result<(), NotManifold> {
+pub(super) fn link_holes(
+    connectivity: &mut Connectivity,
+    holes: &[HalfedgeId],
+) -> Result<(), NotManifold> {
     let Connectivity { prev, to, face, vertex_halfedge, .. } = connectivity;
     for &h in holes {
         let vertex = to[h.twin()];

@@ -112,9 +112,8 @@ fn link(
         let c = corner[h.index()];
         (c != NONE).then(|| FaceId::new(face(c) as usize))
     });
-    let face_halfedge = parallel::map(faces.len(), |f: FaceId| {
-        halfedge(faces.face_start(f).index() as u32)
-    });
+    let face_halfedge =
+        parallel::map(faces.len(), |f: FaceId| halfedge(faces.face_start(f).index() as u32));
     let holes: Vec<HalfedgeId> =
         (0..count).filter(|&h| corner[h] == NONE).map(HalfedgeId::new).collect();
     let mut connectivity = Connectivity { prev, to, face, vertex_halfedge, face_halfedge };
