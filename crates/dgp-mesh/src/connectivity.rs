@@ -86,7 +86,7 @@ impl Connectivity {
 
     /// Joins `faces` whose sides are paired already: the half-edge that starts at corner c, in the order of
     /// [`FaceList::corners`], is `corner_halfedges[c]`, and those of edge e are 2e and 2e + 1. Edges keep
-    /// these numbers. Takes less than [`from_faces`](Self::from_faces), which has to find the pairs.
+    /// these numbers. Unlike [`from_faces`](Self::from_faces) it finds no pairs.
     ///
     /// Errors: [`Error::Unpaired`] with the first corner whose half-edge cannot be, and those of
     /// [`from_faces`](Self::from_faces).

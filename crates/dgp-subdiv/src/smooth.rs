@@ -2,7 +2,7 @@
 //! rows being written down.
 //!
 //! - Input: a level without creases.
-//! - Cost: O(corners), in parallel; a third of what rows take.
+//! - Cost: O(corners), in parallel.
 //! - Guarantees: the same bits for any number of threads.
 
 use dgp_mesh::parallel;

@@ -1,7 +1,7 @@
 //! Half-edges from faces whose sides are paired already, as those of a refined mesh are: nothing is matched.
 //!
 //! - Input: faces, and for each corner the half-edge that starts there; those of edge e are 2e and 2e + 1.
-//! - Cost: O(corners), most of it in parallel; some half of what matching takes.
+//! - Cost: O(corners), most of it in parallel.
 //! - Guarantees: what is not a manifold or not paired is refused.
 
 use super::assemble::{check_degrees, check_fans, link_holes};

@@ -3,5 +3,4 @@
 mod adaptive;
 mod data;
 mod identities;
-mod limit;
 mod reference;
