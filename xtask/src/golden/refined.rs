@@ -53,7 +53,8 @@ fn meshes(quads: bool) -> Outcome<Vec<(&'static str, Mesh)>> {
             ("torus", shapes::torus(2.0, 0.5, 7, 5)?),
             ("cone", shapes::capped_cone(1.0, 2.0, 9, 2)?),
             ("grid", shapes::grid(8, 7)?),
-            ("annulus", shapes::annulus(0.4, 1.0, 9, 6)?),
+            // Wide enough for faces that are two rings from both rims.
+            ("annulus", shapes::annulus(0.4, 1.0, 9, 8)?),
             ("holed-sphere", shapes::with_holes(&shapes::icosphere(2)?, 2, 1, 3)?),
         ]
     };
