@@ -26,7 +26,7 @@ pub(crate) fn assemble(
         check_degrees(faces)?;
     }
     let mut vertex_halfedge = VertexMap::filled(vertex_count, None);
-    let (corner, holes) = number_edges(faces, &mut vertex_halfedge)?;
+    let (corner, holes) = number_edges(faces, &mut vertex_halfedge, parallel::halvings())?;
     let (mut connectivity, corner_halfedges) = link_faces(faces, corner);
     connectivity.vertex_halfedge = vertex_halfedge;
     link_holes(&mut connectivity, &holes)?;
@@ -68,6 +68,7 @@ pub(super) fn check_degrees(faces: &FaceList) -> Result<(), NotManifold> {
 fn number_edges(
     faces: &FaceList,
     vertex_halfedge: &mut VertexMap<Option<HalfedgeId>>,
+    halvings: u32,
 ) -> Result<(Vec<u32>, Vec<HalfedgeId>), NotManifold> {
     // All that is large is made here: what a thread frees stays with that thread.
     let starts = starts(vertex_halfedge.len(), faces);
@@ -79,7 +80,7 @@ fn number_edges(
         halfedges: vertex_halfedge.values_mut(),
         sides: &mut sides,
     };
-    match part.number(faces, &starts, parallel::halvings()) {
+    match part.number(faces, &starts, halvings) {
         Ok(Edges { count, holes, peaks }) => {
             for (v, h) in peaks {
                 vertex_halfedge[v] = Some(h);
@@ -418,6 +419,28 @@ mod tests {
             Err(Error::NotManifold(reason)) => reason,
             other => panic!("expected a refusal, got {other:?}"),
         }
+    }
+
+    #[test]
+    fn edges_are_the_same_in_one_part_and_in_many() {
+        let sphere = crate::shapes::icosphere(4).unwrap().to_indexed();
+        let holed = crate::shapes::with_holes(&crate::shapes::icosphere(4).unwrap(), 5, 2, 1);
+        let holed = holed.unwrap().to_indexed();
+        let three = FaceList::from_indices(&vec![[0, 1, 2]; 3 * parallel::BLOCK]);
+        for set in [&sphere, &holed, &crate::shapes::shuffled(&holed, 2)] {
+            let numbered = |halvings| {
+                let mut leaving = VertexMap::filled(set.vertex_count(), None);
+                let edges = number_edges(set.faces(), &mut leaving, halvings).unwrap();
+                (edges, leaving)
+            };
+            let whole = numbered(0);
+            for halvings in 1..5 {
+                assert!(numbered(halvings) == whole, "{halvings}");
+            }
+        }
+        let refused =
+            |halvings| number_edges(&three, &mut VertexMap::filled(3, None), halvings).unwrap_err();
+        assert_eq!(refused(0), refused(2));
     }
 
     #[test]
