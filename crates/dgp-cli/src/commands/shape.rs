@@ -61,6 +61,8 @@ enum Kind {
     Grid,
     /// GENUS LEVEL: a closed surface with so many handles, its triangles cut in four so often
     Genus,
+    /// PERIODS CELLS: a ball cut out of a gyroid, handles in all directions; cells per period
+    Gyroid,
 }
 
 impl Shape {
@@ -123,6 +125,10 @@ impl Shape {
             Kind::Genus => {
                 let [genus, level] = self.counts("GENUS LEVEL")?;
                 shapes::surface_of_genus(genus, level)?
+            }
+            Kind::Gyroid => {
+                let [periods, cells] = self.counts("PERIODS CELLS")?;
+                shapes::gyroid(periods, cells)?
             }
         })
     }
