@@ -8,10 +8,13 @@
 
 use std::ops::Range;
 
-use super::sides::{Side, fill, for_each_side, middles, sort, starts};
+use super::{
+    corners::{Corners, Every, Mixed},
+    sides::{Side, fill, for_each_side, middles, sort, starts},
+};
 use crate::{
-    Connectivity, CornerId, FaceId, FaceList, HalfedgeId, NotManifold, VertexId, VertexMap,
-    parallel,
+    Connectivity, CornerId, FaceId, FaceList, HalfedgeId, HalfedgeMap, NotManifold, VertexId,
+    VertexMap, parallel,
 };
 
 /// The number of the half-edge that starts at each corner, in the order of [`FaceList::corners`].
@@ -281,46 +284,23 @@ fn obstacle(smaller: VertexId, larger: VertexId, faces: &FaceList) -> NotManifol
 /// Links the half-edges that start at these corners, and says which starts at each corner. Those without a
 /// face precede themselves for now.
 fn link_faces(faces: &FaceList, corner: Vec<u32>) -> (Connectivity, CornerHalfedges) {
-    if faces.uniform_degree() == Some(3) {
-        return link(
-            faces,
-            corner,
-            |c| (c / 3) as usize,
-            |c| if c % 3 == 0 { c + 2 } else { c - 1 },
-            |c| if c % 3 == 2 { c - 2 } else { c + 1 },
-        );
+    match faces.uniform_degree() {
+        Some(3) => link(faces, corner, &Every::<3>),
+        Some(4) => link(faces, corner, &Every::<4>),
+        _ => link(faces, corner, &Mixed::new(faces)),
     }
-    let mut corner_faces = Vec::with_capacity(faces.corners().len());
-    for (f, face) in faces.iter() {
-        corner_faces.resize(corner_faces.len() + face.len(), f);
-    }
-    let face = |c: u32| corner_faces[c as usize];
-    let start = |c: u32| faces.face_start(face(c)).index() as u32;
-    let end = |c: u32| start(c) + faces.degree(face(c)) as u32;
-    link(
-        faces,
-        corner,
-        |c| face(c).index(),
-        |c| if c == start(c) { end(c) - 1 } else { c - 1 },
-        |c| if c + 1 == end(c) { start(c) } else { c + 1 },
-    )
 }
 
-/// Each array is written once, in order where that can be: pages that are new cost more than what is
-/// written on them.
 #[inline]
 fn link(
     faces: &FaceList,
     corner: Vec<u32>,
-    face: impl Fn(u32) -> usize + Sync,
-    preceding: impl Fn(u32) -> u32 + Sync + Send,
-    following: impl Fn(u32) -> u32 + Sync + Send,
+    corners: &impl Corners,
 ) -> (Connectivity, CornerHalfedges) {
     let vertices = faces.corners();
     let none = vertices.len() as u32;
-    // What stays is made before what is freed, which is then given back.
-    let (to, prev) = (Vec::with_capacity(corner.len()), Vec::with_capacity(corner.len()));
-    let face_halfedge = Vec::with_capacity(faces.len());
+    let room = Room::new(corner.len(), faces.len());
+    let to = Vec::with_capacity(corner.len());
     let mut halfedges = vec![0; vertices.len()];
     let ((), to) = parallel::join(
         || {
@@ -330,27 +310,66 @@ fn link(
                 }
             }
         },
-        || {
-            parallel::map_in(to, corner.len(), |h: HalfedgeId| match corner[h.index()] {
-                // Where the other side starts.
-                c if c == none => vertices[corner[h.twin().index()] as usize],
-                c => vertices[following(c) as usize],
-            })
-        },
+        || heads(to, vertices, &corner, corners),
     );
-    let halfedge = |c: u32| HalfedgeId::new(halfedges[c as usize] as usize);
-    let prev = parallel::map_in(prev, corner.len(), |h: HalfedgeId| match corner[h.index()] {
-        c if c == none => h,
-        c => halfedge(preceding(c)),
-    });
-    let face_halfedge = parallel::map_in(face_halfedge, faces.len(), |f: FaceId| {
-        halfedge(faces.face_start(f).index() as u32)
-    });
-    // Takes the place of the corners.
-    let face: Vec<_> =
-        corner.into_iter().map(|c| (c != none).then(|| FaceId::new(face(c)))).collect();
-    let face = face.into();
-    (Connectivity { prev, to, face, face_halfedge, ..Connectivity::default() }, halfedges)
+    (room.link(faces, corner, &halfedges, to, corners), halfedges)
+}
+
+/// The vertex that each half-edge leads to, given the corners where they start.
+#[inline]
+pub(super) fn heads(
+    room: Vec<VertexId>,
+    vertices: &[VertexId],
+    corner: &[u32],
+    corners: &impl Corners,
+) -> HalfedgeMap<VertexId> {
+    let none = vertices.len() as u32;
+    parallel::map_in(room, corner.len(), |h: HalfedgeId| match corner[h.index()] {
+        // Where the other side starts.
+        c if c == none => vertices[corner[h.twin().index()] as usize],
+        c => vertices[corners.following(c) as usize],
+    })
+}
+
+/// Memory for what stays, made before what is freed, which is then given back.
+pub(super) struct Room {
+    prev: Vec<HalfedgeId>,
+    face_halfedge: Vec<HalfedgeId>,
+}
+
+impl Room {
+    pub(super) fn new(halfedges: usize, faces: usize) -> Self {
+        let (prev, face_halfedge) = (Vec::with_capacity(halfedges), Vec::with_capacity(faces));
+        Room { prev, face_halfedge }
+    }
+
+    /// All but what starts at each vertex. `corner` says where half-edges start, one past the last corner if
+    /// nowhere, and `halfedges` which starts at each corner. Each array is written once, in order: pages that
+    /// are new cost more than what is written on them.
+    #[inline]
+    pub(super) fn link(
+        self,
+        faces: &FaceList,
+        corner: Vec<u32>,
+        halfedges: &[u32],
+        to: HalfedgeMap<VertexId>,
+        corners: &impl Corners,
+    ) -> Connectivity {
+        let none = halfedges.len() as u32;
+        let halfedge = |c: u32| HalfedgeId::new(halfedges[c as usize] as usize);
+        let prev =
+            parallel::map_in(self.prev, corner.len(), |h: HalfedgeId| match corner[h.index()] {
+                c if c == none => h,
+                c => halfedge(corners.preceding(c)),
+            });
+        let face_halfedge = parallel::map_in(self.face_halfedge, faces.len(), |f: FaceId| {
+            halfedge(faces.face_start(f).index() as u32)
+        });
+        // Takes the place of the corners.
+        let face: Vec<_> =
+            corner.into_iter().map(|c| (c != none).then(|| corners.face(c))).collect();
+        Connectivity { prev, to, face: face.into(), face_halfedge, ..Connectivity::default() }
+    }
 }
 
 /// Chains the half-edges without a face around each hole, and lets boundary vertices start with them.

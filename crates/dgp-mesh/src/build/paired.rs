@@ -4,14 +4,13 @@
 //! - Cost: O(corners), most of it in parallel.
 //! - Guarantees: what is not a manifold or not paired is refused.
 
-use super::assemble::{check_degrees, check_fans, link_holes};
-use crate::{
-    Connectivity, CornerId, Error, FaceId, FaceList, HalfedgeId, NotManifold, VertexId, VertexMap,
-    parallel,
+use super::{
+    assemble::{Room, check_degrees, check_fans, heads, link_holes},
+    corners::{Corners, Every, Mixed},
 };
-
-/// What a half-edge without a face has in place of a corner.
-const NONE: u32 = u32::MAX;
+use crate::{
+    Connectivity, CornerId, Error, FaceList, HalfedgeId, NotManifold, VertexId, VertexMap, parallel,
+};
 
 /// Joins faces whose vertices are all in range.
 pub(crate) fn paired(
@@ -21,39 +20,9 @@ pub(crate) fn paired(
 ) -> Result<Connectivity, Error> {
     check_degrees(faces)?;
     match faces.uniform_degree() {
-        Some(3) => link(
-            vertex_count,
-            faces,
-            halfedges,
-            |c| c / 3,
-            |c| if c % 3 == 0 { c + 2 } else { c - 1 },
-            |c| if c % 3 == 2 { c - 2 } else { c + 1 },
-        ),
-        Some(4) => link(
-            vertex_count,
-            faces,
-            halfedges,
-            |c| c / 4,
-            |c| c & !3 | c.wrapping_sub(1) & 3,
-            |c| c & !3 | (c + 1) & 3,
-        ),
-        _ => {
-            let mut face_of = Vec::with_capacity(faces.corners().len());
-            for (f, face) in faces.iter() {
-                face_of.resize(face_of.len() + face.len(), f);
-            }
-            let face = |c: u32| face_of[c as usize];
-            let start = |c: u32| faces.face_start(face(c)).index() as u32;
-            let end = |c: u32| start(c) + faces.degree(face(c)) as u32;
-            link(
-                vertex_count,
-                faces,
-                halfedges,
-                |c| face(c).index() as u32,
-                |c| if c == start(c) { end(c) - 1 } else { c - 1 },
-                |c| if c + 1 == end(c) { start(c) } else { c + 1 },
-            )
-        }
+        Some(3) => link(vertex_count, faces, halfedges, &Every::<3>),
+        Some(4) => link(vertex_count, faces, halfedges, &Every::<4>),
+        _ => link(vertex_count, faces, halfedges, &Mixed::new(faces)),
     }
 }
 
@@ -62,11 +31,11 @@ fn link(
     vertex_count: usize,
     faces: &FaceList,
     halfedges: &[u32],
-    face: impl Fn(u32) -> u32 + Sync + Send,
-    preceding: impl Fn(u32) -> u32 + Sync + Send,
-    following: impl Fn(u32) -> u32 + Sync + Send,
+    corners: &impl Corners,
 ) -> Result<Connectivity, Error> {
     let vertices = faces.corners();
+    // In place of a corner, of half-edges without a face.
+    let none = vertices.len() as u32;
     let unpaired = |corner: usize| Error::Unpaired { corner: CornerId::new(corner) };
     if halfedges.len() != vertices.len() {
         return Err(unpaired(halfedges.len().min(vertices.len())));
@@ -77,46 +46,34 @@ fn link(
         let is_last = |&h: &u32| h as usize | 1 == count - 1;
         return Err(unpaired(halfedges.iter().position(is_last).unwrap_or(0)));
     }
-    let mut corner = vec![NONE; count];
+    let mut corner = vec![none; count];
     let mut vertex_halfedge = VertexMap::filled(vertex_count, None);
     for ((&h, &v), c) in halfedges.iter().zip(vertices).zip(0..) {
-        if std::mem::replace(&mut corner[h as usize], c) != NONE {
+        if std::mem::replace(&mut corner[h as usize], c) != none {
             return Err(unpaired(c as usize));
         }
         vertex_halfedge[v] = Some(HalfedgeId::new(h as usize));
     }
-    if let Some(edge) = corner.as_chunks::<2>().0.iter().position(|pair| *pair == [NONE; 2]) {
+    if let Some(edge) = corner.as_chunks::<2>().0.iter().position(|pair| *pair == [none; 2]) {
         // Another edge has a number it should not have.
         let is_later = |&h: &u32| h as usize / 2 > edge;
         return Err(unpaired(halfedges.iter().position(is_later).unwrap_or(0)));
     }
-    let to = parallel::map(count, |h: HalfedgeId| match corner[h.index()] {
-        NONE => vertices[corner[h.twin().index()] as usize],
-        c => vertices[following(c) as usize],
-    });
+    let to = heads(Vec::new(), vertices, &corner, corners);
     let wrong = parallel::map_blocks(count, parallel::BLOCK, |block| {
         block.map(HalfedgeId::new).find(|&h| {
             let other = corner[h.twin().index()];
-            other != NONE && to[h] != vertices[other as usize]
+            other != none && to[h] != vertices[other as usize]
         })
     });
     if let Some(h) = wrong.into_iter().flatten().next() {
         return Err(unpaired(corner[h.twin().index()] as usize));
     }
-    let halfedge = |c: u32| HalfedgeId::new(halfedges[c as usize] as usize);
-    let prev = parallel::map(count, |h: HalfedgeId| match corner[h.index()] {
-        NONE => h,
-        c => halfedge(preceding(c)),
-    });
-    let face = parallel::map(count, |h: HalfedgeId| {
-        let c = corner[h.index()];
-        (c != NONE).then(|| FaceId::new(face(c) as usize))
-    });
-    let face_halfedge =
-        parallel::map(faces.len(), |f: FaceId| halfedge(faces.face_start(f).index() as u32));
     let holes: Vec<HalfedgeId> =
-        (0..count).filter(|&h| corner[h] == NONE).map(HalfedgeId::new).collect();
-    let mut connectivity = Connectivity { prev, to, face, vertex_halfedge, face_halfedge };
+        (0..count).filter(|&h| corner[h] == none).map(HalfedgeId::new).collect();
+    let mut connectivity =
+        Room::new(count, faces.len()).link(faces, corner, halfedges, to, corners);
+    connectivity.vertex_halfedge = vertex_halfedge;
     link_holes(&mut connectivity, &holes)?;
     check_fans(&connectivity)?;
     check_neighbors(&connectivity)?;
