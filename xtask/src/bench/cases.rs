@@ -179,20 +179,11 @@ fn files(cases: &mut Vec<Case>) {
 /// Refinement of cages.
 fn subdivision(cases: &mut Vec<Case>) {
     let case = |name, what, scheme, cage, ours| Case {
-        name,
-        what,
-        ours,
         openmesh: None,
         cgal: None,
-        cholmod: &[],
-        opensubdiv: &[],
         scheme: Some(scheme),
-        scipy: None,
-        one_thread: false,
-        handles: false,
-        largest: usize::MAX,
         data: Data::Cage(cage),
-        figure: Figure::Time,
+        ..case(name, what, ours)
     };
     let subdivide = "subdivide";
     for (name, what, scheme, cage, openmesh, cgal) in [

@@ -19,12 +19,20 @@ pub(super) struct Input {
     pub(super) raw: PathBuf,
     /// The same with some faces turned over.
     pub(super) soup: PathBuf,
-    /// Whether it is there for the solvers, whose work depends on the handles.
-    pub(super) handles: bool,
     /// The folder with the mesh in every format, if it was written.
     pub(super) files: Option<PathBuf>,
-    /// What it is made of and how often it is to be refined, if it is for that.
-    pub(super) cage: Option<(Cage, usize)>,
+    pub(super) purpose: Purpose,
+}
+
+/// Which cases an input is for.
+#[derive(Clone, Copy)]
+pub(super) enum Purpose {
+    /// All but the refinement of cages.
+    Any,
+    /// The solvers, whose work depends on the handles.
+    Solvers,
+    /// To be refined so often.
+    Refinement(Cage, usize),
 }
 
 /// Writes the inputs for this effort.
@@ -61,9 +69,8 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
             triangles,
             raw: path,
             soup,
-            handles: false,
             files: Some(place),
-            cage: None,
+            purpose: Purpose::Any,
         });
         if let Some(set) = shuffled {
             let path = folder.join(format!("{name}-shuffled.raw"));
@@ -75,9 +82,8 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
                 triangles,
                 raw: path,
                 soup,
-                handles: false,
                 files: None,
-                cage: None,
+                purpose: Purpose::Any,
             });
         }
     }
@@ -92,9 +98,8 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
         triangles,
         soup: path.clone(),
         raw: path,
-        handles: true,
         files: None,
-        cage: None,
+        purpose: Purpose::Solvers,
     });
     cages(effort, folder, &mut inputs)?;
     Ok(inputs)
@@ -119,15 +124,13 @@ fn cages(effort: Effort, folder: &Path, inputs: &mut Vec<Input>) -> Outcome<()> 
             let raw = folder.join(format!("cage-{kind}-{levels}-{}.raw", set.face_count()));
             raw::write(&raw, &set)?;
             let triangles = set.face_count() << (2 * levels);
-            let cage = Some((cage, levels));
             inputs.push(Input {
                 name,
                 triangles,
                 soup: raw.clone(),
                 raw,
-                handles: false,
                 files: None,
-                cage,
+                purpose: Purpose::Refinement(cage, levels),
             });
         }
     }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::{
     Effort,
     cases::{Case, Data, Figure},
-    inputs::Input,
+    inputs::{Input, Purpose},
 };
 use crate::peers::{Driver, Peers};
 
@@ -43,11 +43,13 @@ pub(super) fn case(
     effort: Effort,
     folder: &Path,
 ) -> Option<Row> {
-    if input.triangles > case.largest || (input.handles && !case.handles) {
-        return None;
-    }
-    let is_cage = matches!((case.data, input.cage), (Data::Cage(a), Some((b, _))) if a == b);
-    if is_cage != (input.cage.is_some() || matches!(case.data, Data::Cage(_))) {
+    let (is_meant, levels) = match (input.purpose, case.data) {
+        (Purpose::Refinement(cage, levels), Data::Cage(wanted)) => (cage == wanted, Some(levels)),
+        (Purpose::Refinement(..), _) | (_, Data::Cage(_)) => (false, None),
+        (Purpose::Solvers, _) => (case.handles, None),
+        (Purpose::Any, _) => (true, None),
+    };
+    if !is_meant || input.triangles > case.largest {
         return None;
     }
     let (path, out) = match (case.data, &input.files) {
@@ -89,7 +91,7 @@ pub(super) fn case(
         Effort::Full if input.triangles > 1_000_000 => (3, "2"),
         Effort::Full => (5, "3"),
     };
-    let levels = input.cage.map(|(_, levels)| levels.to_string());
+    let levels = levels.map(|levels| levels.to_string());
     let mut series: Vec<Series> = drivers.iter().map(|_| Series::default()).collect();
     let mut failures = BTreeMap::new();
     for _ in 0..rounds {
