@@ -8,8 +8,10 @@ use dgp_sparse::{
     elimination_order,
 };
 
-#[path = "../tests/solvers/common/surfaces.rs"]
-mod surfaces;
+#[path = "../tests/solvers/common/mod.rs"]
+#[allow(dead_code, reason = "the tests use more of it")]
+mod common;
+use common::surfaces;
 
 /// The spheres have 10,242, 163,842 and 655,362 vertices.
 const LEVELS: [usize; 3] = [5, 7, 8];

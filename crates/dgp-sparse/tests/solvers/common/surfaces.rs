@@ -4,35 +4,15 @@ use std::collections::BTreeMap;
 
 use dgp_sparse::SparseMatrix;
 
+use super::elements::icosphere;
+
 /// The number of vertices, and the triangles.
 pub(crate) type Surface = (usize, Vec<[u32; 3]>);
 
 /// An icosahedron whose faces are cut in four so often.
 pub(crate) fn sphere(level: usize) -> Surface {
-    let mut faces: Vec<[u32; 3]> = (0..5)
-        .flat_map(|i| {
-            let (a, b, c, d) = (1 + i, 1 + (i + 1) % 5, 6 + i, 6 + (i + 1) % 5);
-            [[0, a, b], [a, c, b], [b, c, d], [c, 11, d]]
-        })
-        .collect();
-    let mut count = 12;
-    for _ in 0..level {
-        let mut middles = BTreeMap::new();
-        let mut middle = |a: u32, b: u32| {
-            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                count += 1;
-                count - 1
-            })
-        };
-        faces = faces
-            .iter()
-            .flat_map(|&[a, b, c]| {
-                let (x, y, z) = (middle(b, c), middle(c, a), middle(a, b));
-                [[a, z, y], [b, x, z], [c, y, x], [x, y, z]]
-            })
-            .collect();
-    }
-    (count as usize, faces)
+    let (points, faces) = icosphere(level);
+    (points.len(), faces)
 }
 
 /// A gyroid: so many cells of a grid along each side of a cube that holds two periods,
