@@ -133,10 +133,8 @@ impl Cholesky {
     /// L from the lower triangle; the place of the pivot that is not positive, if there is one.
     fn factor(&mut self) -> Result<(), usize> {
         let entries = self.symbolic.stored_entries();
-        if self.factor.len() == entries {
-            self.factor.fill(0.0);
-        } else {
-            // Zeros that the system hands out are not written twice.
+        if self.factor.len() != entries {
+            // The system hands out zeros without writing them.
             self.factor = vec![0.0; entries];
         }
         self.symbolic.factor_numbers(&self.lower, &mut self.factor)

@@ -44,7 +44,7 @@ const NARROW: usize = 8;
 const SMALL: usize = 6000;
 
 impl SymbolicCholesky {
-    /// Fills `factor`, which holds zeros, from the values of the lower triangle. An error is the place of
+    /// Sets `factor`, whatever it holds, from the values of the lower triangle. An error is the place of
     /// the first pivot that is not positive.
     pub(super) fn factor_numbers(&self, lower: &[f64], factor: &mut [f64]) -> Result<(), usize> {
         Numeric { symbolic: self, lower }.forest(self.supernodes().roots(), factor, 0).map(|_| ())
@@ -118,6 +118,9 @@ impl Numeric<'_> {
         let updates = self.forest(children, below, offset)?;
         let rows = self.symbolic.block_rows(root).len();
         let mut update = vec![0.0; rows * rows];
+        for (j, column) in update.chunks_exact_mut(rows.max(1)).enumerate() {
+            column[j..].fill(0.0);
+        }
         let mut workspace = self.workspace(root..root + 1);
         let updates = children.iter().zip(&updates).map(|(&child, update)| (child, &update[..]));
         self.front(root, panel, updates, &mut update, &mut workspace)?;
@@ -191,8 +194,7 @@ impl Numeric<'_> {
         result
     }
 
-    /// Adds up the front of a block and eliminates its columns. `panel` holds zeros and becomes the block
-    /// of the factor; of `update`, a square, the lower triangle is set.
+    /// Adds up the front of a block and eliminates its columns. `panel` becomes the block of the factor; of `update`, a square, the lower triangle is set.
     fn front<'u>(
         self,
         block: usize,
@@ -204,6 +206,8 @@ impl Numeric<'_> {
         let columns = self.symbolic.block_columns(block);
         let below = self.symbolic.block_rows(block);
         let rows = columns + below.len();
+        // A write first: reading pages that are new gives each of them twice, and stops the other threads.
+        panel.fill(0.0);
         self.add_entries(block, panel);
         // The children's parts of F₂₂ are added after −L₂₁ L₂₁ᵀ, which need not be added to zeros then.
         let mut waiting: Vec<(&[f64], Range<usize>)> = Vec::new();
