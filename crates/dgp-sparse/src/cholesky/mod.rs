@@ -19,6 +19,7 @@
 mod diagnose;
 mod inertia;
 mod kernel;
+mod large;
 mod numeric;
 mod solve;
 mod supernodes;

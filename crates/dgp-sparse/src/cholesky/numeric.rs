@@ -25,13 +25,12 @@ use faer::{
         cholesky::llt::factor::{
             LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
         },
-        matmul::triangular::{BlockStructure, matmul},
         triangular_solve::solve_lower_triangular_in_place,
     },
     prelude::default,
 };
 
-use super::{kernel, symbolic::SymbolicCholesky};
+use super::{kernel, large, symbolic::SymbolicCholesky};
 use crate::parallel;
 
 /// Subtrees with fewer operations are one task: some milliseconds.
@@ -42,6 +41,9 @@ const NARROW: usize = 8;
 
 /// Updates of more operations are multiplied by faer.
 const SMALL: usize = 6000;
+
+/// Blocks of more operations are shared among threads.
+const LARGE: usize = 100_000_000;
 
 impl SymbolicCholesky {
     /// Sets `factor`, whatever it holds, from the values of the lower triangle. An error is the place of
@@ -236,17 +238,8 @@ impl Numeric<'_> {
             kernel::negative_square(panel, columns, rows, update);
         } else {
             let (_, left) = view(panel, rows, columns).split_at_row(columns);
-            matmul(
-                MatMut::from_column_major_slice_mut(update, height, height),
-                BlockStructure::TriangularLower,
-                Accum::Replace,
-                left,
-                BlockStructure::Rectangular,
-                left.transpose(),
-                BlockStructure::Rectangular,
-                -1.0,
-                Par::Seq,
-            );
+            let update = MatMut::from_column_major_slice_mut(update, height, height);
+            large::subtract_square(update, left, Accum::Replace);
         }
         for (values, range) in waiting {
             let places = &workspace.rows[range];
@@ -315,6 +308,9 @@ fn eliminate(
         return kernel::eliminate(panel, columns, rows);
     }
     let panel = MatMut::from_column_major_slice_mut(panel, rows, columns);
+    if columns * rows * rows > LARGE {
+        return large::eliminate(panel, memory);
+    }
     let (mut square, below) = panel.split_at_row_mut(columns);
     let params: Spec<LltParams, f64> = default();
     let (regularization, stack) = (LltRegularization::default(), MemStack::new(memory));
