@@ -12,7 +12,8 @@ use dgp::{
     mesh,
     sparse::{
         self, Cholesky, CholeskyOptions, ConjugateGradients, ConjugateGradientsOptions,
-        FixedSystem, LeastSquaresMethod, Lu, Mass, SparseMatrix, eigenpairs, least_squares,
+        EqualitySystem, FixedSystem, LeastSquaresMethod, Lu, Mass, SoftSystem, SparseMatrix,
+        eigenpairs, least_squares,
     },
 };
 use serde_json::{Value, json};
@@ -42,6 +43,15 @@ pub(crate) struct Solve {
     /// Rows whose unknowns are given, such as `0=1.5,7=0` (cholesky)
     #[arg(long, value_name = "ROW=X,…", value_delimiter = ',', value_parser = given)]
     fix: Vec<(u32, f64)>,
+    /// Equations C x = d beside the system, a row of C each: exact ones, unless they have weights (cholesky)
+    #[arg(long, value_name = "MTX", conflicts_with = "fix", requires = "rhs")]
+    equations: Option<PathBuf>,
+    /// The right-hand sides d of the equations; zeros if not given
+    #[arg(long, value_name = "FILE", requires = "equations")]
+    targets: Option<PathBuf>,
+    /// The weights of the equations: one number for all, or a file with a line for each
+    #[arg(long, value_name = "W|FILE", requires = "equations", allow_negative_numbers = true)]
+    weights: Option<String>,
     /// The K smallest eigenvalues of a symmetric semidefinite matrix instead
     #[arg(long, value_name = "K", conflicts_with_all = ["rhs", "fix", "method"])]
     eigenvalues: Option<usize>,
@@ -65,6 +75,14 @@ enum Method {
     LeastSquares,
 }
 
+/// C x = d for each right-hand side, with weights or exactly.
+struct Equations {
+    matrix: SparseMatrix,
+    /// Column after column.
+    targets: Vec<f64>,
+    weights: Option<Vec<f64>>,
+}
+
 /// What was found: columns one after the other.
 struct Found {
     columns: Vec<f64>,
@@ -75,8 +93,11 @@ struct Found {
 
 impl Solve {
     pub(crate) fn run(&self, common: &Common) -> Result<ExitCode, Failure> {
-        if !self.fix.is_empty() && self.method != Method::Cholesky {
-            return Err(Failure::Usage("--fix goes with --method cholesky".to_owned()));
+        let options = [("--fix", !self.fix.is_empty()), ("--equations", self.equations.is_some())];
+        for (name, given) in options {
+            if given && self.method != Method::Cholesky {
+                return Err(Failure::Usage(format!("{name} goes with --method cholesky")));
+            }
         }
         let mut session = Session::new("solve", common);
         let matrix = read_matrix(&self.matrix)?;
@@ -84,7 +105,11 @@ impl Solve {
             (Some(count), _) => self.eigen(&mut session, common, &matrix, count),
             (None, Some(path)) => {
                 let rhs = read_columns(path, matrix.rows())?;
-                self.solve(&mut session, &matrix, &rhs)
+                let equations = self.equations(&rhs, matrix.rows())?;
+                match &equations {
+                    Some(equations) => self.solve_with(equations, &mut session, &matrix, &rhs),
+                    None => self.solve(&mut session, &matrix, &rhs),
+                }
             }
             (None, None) => {
                 return Err(Failure::Usage("give --rhs FILE or --eigenvalues K".to_owned()));
@@ -168,6 +193,92 @@ impl Solve {
         Ok(Found { columns: x, names, report, summary })
     }
 
+    /// The equations beside the system, of which `rhs` holds right-hand sides for `rows` rows.
+    fn equations(&self, rhs: &[f64], rows: usize) -> Result<Option<Equations>, Failure> {
+        let Some(path) = &self.equations else { return Ok(None) };
+        let matrix = read_matrix(path)?;
+        let (count, columns) = (matrix.rows(), rhs.len().checked_div(rows).unwrap_or(0));
+        let targets = match &self.targets {
+            Some(path) => read_columns(path, count)?,
+            None => vec![0.0; count * columns],
+        };
+        // One column of targets is good for all right-hand sides.
+        let targets = match targets.len() {
+            given if given == count => targets.repeat(columns),
+            given if given == count * columns => targets,
+            given => {
+                return Err(Failure::Usage(format!(
+                    "--targets: {} columns, but there are {columns} right-hand sides",
+                    given / count.max(1)
+                )));
+            }
+        };
+        let weights = self.weights.as_deref().map(|text| equation_weights(text, count));
+        Ok(Some(Equations { matrix, targets, weights: weights.transpose()? }))
+    }
+
+    /// Minimizes ½ xᵀAx − bᵀx while the equations hold, exactly or as well as their weights demand.
+    fn solve_with(
+        &self,
+        equations: &Equations,
+        session: &mut Session<'_>,
+        matrix: &SparseMatrix,
+        rhs: &[f64],
+    ) -> Result<Found, Failure> {
+        let (n, count) = (matrix.rows(), equations.matrix.rows());
+        let options = CholeskyOptions::default();
+        let mut multipliers = Vec::new();
+        let x = session.run("solving", |progress| {
+            with_progress(progress, |progress| {
+                let pairs = rhs
+                    .chunks(n.max(1))
+                    .enumerate()
+                    .map(|(k, rhs)| (rhs, &equations.targets[k * count..(k + 1) * count]));
+                let mut all = Vec::with_capacity(rhs.len());
+                if let Some(weights) = &equations.weights {
+                    let constraints = &equations.matrix;
+                    let system = SoftSystem::new(matrix, constraints, weights, &options, progress)?;
+                    for (rhs, targets) in pairs {
+                        all.extend(system.solve(rhs, targets)?);
+                    }
+                } else {
+                    let system =
+                        EqualitySystem::new(matrix, &equations.matrix, &options, progress)?;
+                    for (rhs, targets) in pairs {
+                        let (x, forces) = system.solve(rhs, targets)?;
+                        all.extend(x);
+                        multipliers.push(forces);
+                    }
+                }
+                Ok::<_, sparse::Error>(all)
+            })
+        })?;
+        let off: Vec<f64> = x
+            .chunks(n.max(1))
+            .zip(equations.targets.chunks(count.max(1)))
+            .map(|(x, targets)| {
+                let values = equations.matrix.product(x);
+                values.iter().zip(targets).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            })
+            .collect();
+        let worst = off.iter().copied().fold(0.0, f64::max);
+        let solved = rhs.len().checked_div(n).unwrap_or(0);
+        let kind = if equations.weights.is_some() { "weighted" } else { "exact" };
+        let summary = format!(
+            "{}: {n} rows, {} entries, {count} {kind} equations, {solved} solved for; equations off by up to \
+             {worst:.1e}; {}",
+            self.matrix.display(),
+            matrix.entries(),
+            session.spent(),
+        );
+        let report = json!({
+            "rows": n, "columns": n, "entries": matrix.entries(), "method": "cholesky",
+            "equations": count, "kind": kind, "equations_off_by": off, "multipliers": multipliers,
+        });
+        let names = (0..solved).map(|k| format!("x_{k}")).collect();
+        Ok(Found { columns: x, names, report, summary })
+    }
+
     /// ‖A x − b‖ / ‖b‖ over the rows that are to be fulfilled.
     fn residual(&self, matrix: &SparseMatrix, x: &[f64], b: &[f64]) -> f64 {
         let mut off = matrix.product(x);
@@ -213,6 +324,18 @@ impl Solve {
         let names = (0..pairs.values.len()).map(|k| format!("eigenvector_{k}")).collect();
         Ok(Found { columns: pairs.vectors, names, report, summary })
     }
+}
+
+/// A weight for each of `count` equations: one number for all, or a file.
+fn equation_weights(text: &str, count: usize) -> Result<Vec<f64>, Failure> {
+    if let Ok(weight) = text.parse::<f64>() {
+        return Ok(vec![weight; count]);
+    }
+    let weights = read_columns(Path::new(text), count)?;
+    if weights.len() != count {
+        return Err(Failure::Usage("--weights: one number a line is needed".to_owned()));
+    }
+    Ok(weights)
 }
 
 /// `ROW=X`.

@@ -254,6 +254,56 @@ fn systems_of_files_are_solved_by_every_method() {
 }
 
 #[test]
+fn equations_beside_a_system_hold_exactly_or_as_their_weights_demand() {
+    let ends = "%%MatrixMarket matrix coordinate real general\n2 4 2\n1 1 1\n2 4 1\n";
+    let files = [
+        ("chain.mtx", CHAIN),
+        ("ends.mtx", ends),
+        ("zero.csv", "0\n0\n0\n0\n"),
+        ("two.csv", "0,0\n0,0\n0,0\n0,0\n"),
+        ("d.csv", "1\n7\n"),
+        ("w.csv", "3\n3\n"),
+    ];
+    let dgp = Dgp::new(&files);
+    let column = |of: usize| -> Vec<f64> {
+        let text = fs::read_to_string(dgp.folder().join("x.csv")).unwrap();
+        text.lines().skip(1).map(|line| line.split(',').nth(of).unwrap().parse().unwrap()).collect()
+    };
+    let close = |x: &[f64], y: [f64; 4]| x.iter().zip(y).all(|(x, y)| (x - y).abs() < 1e-13);
+    let (code, value) =
+        dgp.json("solve chain.mtx --rhs zero.csv --equations ends.mtx --targets d.csv -o x.csv");
+    assert_eq!(code, 0, "{value}");
+    assert!(close(&column(0), [1.0, 3.0, 5.0, 7.0]), "{:?}", column(0));
+    // What holds the ends is the slope.
+    let force = number(&value["report"]["multipliers"][0][0]).abs();
+    assert!((force - 2.0).abs() < 1e-13, "{value}");
+    // Three springs of stiffness 1 between two of stiffness w: the slope is 6 / (3 + 2/w).
+    for (weights, slope) in [("3", 18.0 / 11.0), ("w.csv", 18.0 / 11.0), ("1", 1.2)] {
+        let command = format!(
+            "solve chain.mtx --rhs two.csv --equations ends.mtx --targets d.csv -o x.csv --weights {weights}"
+        );
+        let (code, value) = dgp.json(&command);
+        assert_eq!(code, 0, "{value}");
+        let exact = [4.0 - 1.5 * slope, 4.0 - 0.5 * slope, 4.0 + 0.5 * slope, 4.0 + 1.5 * slope];
+        assert!(close(&column(0), exact) && close(&column(1), exact), "{:?}", column(0));
+        let off = number(&value["report"]["equations_off_by"][0]);
+        assert!((off - (3.0 - 1.5 * slope)).abs() < 1e-13, "{value}");
+    }
+    for (command, code, message) in [
+        ("solve chain.mtx --rhs zero.csv --equations ends.mtx --method lu", 2, "--equations"),
+        ("solve chain.mtx --rhs zero.csv --equations ends.mtx --fix 0=1", 2, "--fix"),
+        ("solve chain.mtx --rhs zero.csv --equations ends.mtx --weights -1", 1, "weights"),
+        ("solve chain.mtx --rhs zero.csv --equations ends.mtx --weights none.csv", 1, "none.csv"),
+        ("solve chain.mtx --rhs zero.csv --equations ends.mtx --targets two.csv", 2, "2 lines"),
+        ("solve chain.mtx --rhs zero.csv --targets d.csv", 2, "--equations"),
+    ] {
+        let output = dgp.run(command);
+        assert_eq!(output.status.code(), Some(code), "{command}: {}", error(&output));
+        assert!(error(&output).contains(message), "{command}: {}", error(&output));
+    }
+}
+
+#[test]
 fn shapes_are_made_and_euler_tells_what_they_are() {
     let dgp = Dgp::new(&[]);
     for (shape, faces, regular, planar) in [

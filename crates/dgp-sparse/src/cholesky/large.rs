@@ -44,7 +44,8 @@ pub(super) fn eliminate(mut panel: MatMut<'_, f64>, memory: &mut MemBuffer) -> R
         cholesky_in_place(square.rb_mut(), regularization, Par::Seq, stack, default())
             .map_err(|LltError::NonPositivePivot { index }| begun + index)?;
         divide(square.rb(), below.rb_mut());
-        let (top, bottom) = right.split_at_row_mut(width).1.split_at_row_mut(columns - begun - width);
+        let (top, bottom) =
+            right.split_at_row_mut(width).1.split_at_row_mut(columns - begun - width);
         let (beside, under) = below.rb().split_at_row(columns - begun - width);
         parallel::join(
             || subtract_square(top, beside, Accum::Add),

@@ -254,3 +254,44 @@ fn it_stops_when_asked_to() {
         assert_eq!(result.unwrap_err(), Error::Cancelled, "report {stop_at}");
     }
 }
+
+/// A full matrix, large enough for threads to share its one block: I + s sᵀ for a vector s of length
+/// one, with A⁻¹ b = b − ½ s (s·b).
+fn full(n: usize) -> (SparseMatrix, Vec<f64>) {
+    let s: Vec<f64> = (0..n).map(|i| 1.0 + (i as f64).sin()).collect();
+    let length = s.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let s: Vec<f64> = s.iter().map(|x| x / length).collect();
+    let entry = |i: usize, j: usize| s[i] * s[j] + f64::from(u8::from(i == j));
+    let triplets: Vec<_> = (0..n)
+        .flat_map(|i| (0..n).map(move |j| (i, j)))
+        .map(|(i, j)| (i as u32, j as u32, entry(i, j)))
+        .collect();
+    (SparseMatrix::from_triplets(n, n, &triplets).unwrap(), s)
+}
+
+#[test]
+fn a_block_that_threads_share_is_factored_as_on_one() {
+    let n = 900;
+    let (matrix, s) = full(n);
+    let rhs: Vec<f64> = (0..n).map(|i| (3.0 * i as f64).cos()).collect();
+    let along: f64 = s.iter().zip(&rhs).map(|(a, b)| a * b).sum();
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| factored(&matrix).unwrap().solve(&rhs).unwrap())
+    };
+    let x = run(1);
+    for ((x, b), s) in x.iter().zip(&rhs).zip(&s) {
+        assert!((x - (b - 0.5 * along * s)).abs() < 1e-14, "{x}");
+    }
+    assert!(x == run(2) && x == run(3) && x == run(8));
+}
+
+#[test]
+fn a_pivot_deep_in_a_shared_block_is_named() {
+    let (matrix, _) = full(900);
+    let mut shift = vec![0.0; 900];
+    shift[700] = -3.0;
+    let matrix = matrix.plus_diagonal(&shift).unwrap();
+    let error = Cholesky::new(&matrix, &with(Ordering::Natural), Progress::NONE).unwrap_err();
+    assert!(matches!(error, Error::NotPositiveDefinite { row: 700, .. }), "{error:?}");
+}
