@@ -29,7 +29,7 @@ pub enum Ordering {
 
 /// Below this number of rows a minimum degree order and one factorization take no longer than dissection
 /// and its cheaper factorization, and fill in little more: measured on spheres and on gyroids.
-const DISSECTION_PAYS: usize = 30_000;
+const DISSECTION_PAYS: usize = 60_000;
 
 /// The order in which to eliminate the rows of a symmetric matrix: entry `k` is the row that is
 /// eliminated as the `k`-th.
