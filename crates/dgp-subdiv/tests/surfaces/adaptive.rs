@@ -2,7 +2,7 @@
 
 use dgp_mesh::{DVec3, Mesh, Progress, VertexId, shapes, topology::euler_characteristic};
 use dgp_subdiv::{
-    Error, LoopWeights, RefinementOptions, RefinementPlan, SHARP, Scheme, Sharpness,
+    AdaptiveOptions, Error, LoopWeights, RefinementOptions, RefinementPlan, SHARP, Scheme, Sharpness,
     refine_adaptively, refine_to_tolerance,
 };
 
@@ -28,8 +28,15 @@ fn creased(mesh: &Mesh) -> Sharpness {
     sharpness
 }
 
-fn options(scheme: Scheme, levels: usize) -> RefinementOptions {
-    RefinementOptions { scheme, levels, ..RefinementOptions::default() }
+fn options(scheme: Scheme, levels: usize) -> AdaptiveOptions {
+    let refinement = RefinementOptions { scheme, levels, ..RefinementOptions::default() };
+    AdaptiveOptions { refinement, ..AdaptiveOptions::default() }
+}
+
+fn little(levels: usize) -> AdaptiveOptions {
+    let AdaptiveOptions { refinement, .. } = options(Scheme::CatmullClark, levels);
+    let refinement = RefinementOptions { memory_limit: 1 << 20, ..refinement };
+    AdaptiveOptions { refinement, ..AdaptiveOptions::default() }
 }
 
 #[test]
@@ -39,7 +46,7 @@ fn split_everywhere_is_the_limit_of_the_refined_mesh() {
             let options = options(scheme, 3);
             let all = refine_adaptively(&mesh, &sharpness, &options, |_, _| true, Progress::NONE)
                 .unwrap();
-            let plan = RefinementPlan::new(&mesh, &sharpness, &options, Progress::NONE).unwrap();
+            let plan = RefinementPlan::new(&mesh, &sharpness, &options.refinement, Progress::NONE).unwrap();
             let limits = plan.limit(&plan.refine(mesh.positions().values()).unwrap()).unwrap();
             assert_eq!(all.face_count() as u64, plan.counts(3).faces);
             // Faces come in the same order, corner by corner.
@@ -83,13 +90,12 @@ fn levels_meet_without_cracks() {
 #[test]
 fn only_schemes_with_a_limit_are_taken_and_memory_is_kept_to() {
     let mesh = shapes::cube();
-    let refuse = |options: RefinementOptions| {
+    let refuse = |options: AdaptiveOptions| {
         let all = |_: usize, _: &[DVec3]| true;
         refine_adaptively(&mesh, &Sharpness::new(), &options, all, Progress::NONE).unwrap_err()
     };
     assert!(matches!(refuse(options(Scheme::DooSabin, 2)), Error::NoLimit { .. }));
-    let little = RefinementOptions { memory_limit: 1 << 20, ..options(Scheme::CatmullClark, 40) };
-    assert!(matches!(refuse(little), Error::TooLarge { level, .. } if level < 10));
+    assert!(matches!(refuse(little(40)), Error::TooLarge { level, .. } if level < 10));
 }
 
 #[test]
@@ -107,7 +113,7 @@ fn a_tolerance_is_kept_with_fewer_faces_than_everywhere() {
                 "{report:?}"
             );
             assert!(report.levels >= 1, "each face is split once");
-            let everywhere = RefinementOptions { levels: report.levels, ..options };
+            let everywhere = RefinementOptions { levels: report.levels, ..options.refinement };
             let plan = RefinementPlan::new(&mesh, &sharpness, &everywhere, Progress::NONE).unwrap();
             let all = plan.counts(report.levels).faces as usize;
             assert!(refined.face_count() <= all, "{scheme:?} {report:?}");
@@ -121,7 +127,7 @@ fn a_tolerance_is_kept_with_fewer_faces_than_everywhere() {
             let is_reached = closer.largest_deviation <= tolerance / 4.0;
             assert_eq!(closer.faces_beyond == 0, is_reached, "{closer:?}");
             // Where sharp edges meet, the surface is a cone: a level only halves what it is off by.
-            let few = closer.levels == options.levels && closer.faces_beyond < 50;
+            let few = closer.levels == options.refinement.levels && closer.faces_beyond < 50;
             assert!(is_reached || (!sharpness.is_smooth() && few), "{scheme:?} {closer:?}");
         }
     }
@@ -141,6 +147,19 @@ fn levels_that_do_not_suffice_are_told_and_tolerances_are_positive() {
         let error = refine(options(Scheme::CatmullClark, 2), tolerance).unwrap_err();
         assert!(matches!(error, Error::InvalidOption { name: "tolerance", .. }), "{error}");
     }
-    let little = RefinementOptions { memory_limit: 1 << 20, ..options(Scheme::CatmullClark, 40) };
-    assert!(matches!(refine(little, 1e-12), Err(Error::TooLarge { level, .. }) if level < 10));
+    assert!(matches!(refine(little(40), 1e-12), Err(Error::TooLarge { level, .. }) if level < 10));
+}
+
+#[test]
+fn zz_experiment() {
+    for (mesh, scheme) in cages() {
+        let sharpness = creased(&mesh);
+        for levels in [5, 7, 8, 9, 10, 11, 12, 14, 18] {
+            let start = std::time::Instant::now();
+            let r = refine_to_tolerance(&mesh, &sharpness, &options(scheme, levels), 1e-3, Progress::NONE);
+            let (m, r) = r.unwrap();
+            println!("{scheme:?} {} {levels}: {r:?} {} {:?}", mesh.face_count(), m.face_count(), start.elapsed());
+            if r.faces_beyond == 0 { break; }
+        }
+    }
 }

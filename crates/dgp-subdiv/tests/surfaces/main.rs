@@ -1,6 +1,7 @@
 //! Subdivision surfaces, as their users see them.
 
 mod adaptive;
+mod carried;
 mod data;
 mod identities;
 mod reference;
