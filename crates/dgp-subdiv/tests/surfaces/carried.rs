@@ -128,7 +128,7 @@ fn offset(chart: u32) -> DVec3 {
 fn faces_get_the_values_of_their_own_chart_at_vertices_that_the_other_has_made() {
     for (mesh, scheme) in [
         (shapes::quad_torus(2.0, 0.5, 8, 6).unwrap(), Scheme::CatmullClark),
-        (shapes::torus(2.0, 1.0, 6, 5).unwrap(), LOOP),
+        (shapes::torus(2.0, 1.0, 6, 6).unwrap(), LOOP),
     ] {
         let (mesh, sharpness) = two_charts(&mesh);
         // The first faces of the second chart have a seam.
@@ -138,7 +138,8 @@ fn faces_get_the_values_of_their_own_chart_at_vertices_that_the_other_has_made()
             .map(|e| mesh.edge_vertices(e).map(|v| mesh.position(v)))
             .unwrap();
         let middle = seam[0].midpoint(seam[1]);
-        for rule in &RULES[1..] {
+        // The surface is smooth along its creases, and so are the rims of charts under these rules.
+        for rule in &RULES[1..5] {
             let (center, across) = (DVec3::new(middle.x, middle.y, 0.0), middle.cross(DVec3::Z));
             for side in [1.0, -1.0] {
                 let wanted = |level: usize, corners: &[DVec3]| {

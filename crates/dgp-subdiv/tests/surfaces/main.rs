@@ -3,5 +3,6 @@
 mod adaptive;
 mod carried;
 mod data;
+mod fans;
 mod identities;
 mod reference;
