@@ -96,8 +96,9 @@ fn linear(topology: &Topology, row: usize, stencil: &mut Stencil) {
     if row < vertices {
         stencil.push(row as u32, 1.0);
     } else if row < vertices + edges {
-        let h = 2 * (row - vertices);
-        [h, h + 1].into_iter().for_each(|h| stencil.push(topology.from[h], 0.5));
+        for h in [2 * (row - vertices), 2 * (row - vertices) + 1] {
+            stencil.push(topology.from[h], 0.5);
+        }
     } else {
         let corners = topology.corners((row - vertices - edges) as u32);
         let weight = 1.0 / corners.len() as f64;
