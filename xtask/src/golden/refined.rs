@@ -10,7 +10,7 @@ use dgp_mesh::{DVec3, EdgeId, FaceId, FaceList, IndexedFaceSet, Mesh, Progress, 
 use dgp_subdiv::{BoundaryRule, RefinementOptions, RefinementPlan, SHARP, Sharpness};
 
 use super::{
-    Facts, Table, Verdict,
+    Facts, Table, Verdict, charts,
     compare::{Comparison, TOLERANCE},
 };
 use crate::{
@@ -27,14 +27,14 @@ const REACH: f64 = 1e-9;
 const OTHER_RIMS: [(&str, &str); 1] = [("OpenMesh", "catmull-clark")];
 
 /// A cage with what is sharp in it.
-struct Cage {
-    name: String,
-    mesh: Mesh,
-    sharpness: Sharpness,
-    boundary: BoundaryRule,
+pub(super) struct Cage {
+    pub(super) name: String,
+    pub(super) mesh: Mesh,
+    pub(super) sharpness: Sharpness,
+    pub(super) boundary: BoundaryRule,
 }
 
-fn meshes(quads: bool) -> Outcome<Vec<(&'static str, Mesh)>> {
+pub(super) fn meshes(quads: bool) -> Outcome<Vec<(&'static str, Mesh)>> {
     let shapes = if quads {
         vec![
             ("cube", shapes::cube()),
@@ -113,11 +113,11 @@ pub(super) fn compare(peers: &Peers, folder: &Path, table: &mut Table) -> Outcom
             }
         }
     }
-    Ok(())
+    charts::compare(driver, folder, table)
 }
 
 /// Every rule somewhere; all values are exact in 32 bits, which OpenSubdiv keeps them in.
-fn some_sharpness(mesh: &Mesh) -> Sharpness {
+pub(super) fn some_sharpness(mesh: &Mesh) -> Sharpness {
     let mut sharpness = Sharpness::new();
     let values = [0.0, 0.25, 1.0, 1.75, SHARP, 0.0, 2.5, 0.0, 0.0];
     for e in mesh.edges() {
@@ -270,7 +270,7 @@ impl Cage {
         Ok(all)
     }
 
-    fn tags(&self) -> Outcome<String> {
+    pub(super) fn tags(&self) -> Outcome<String> {
         let mut text = String::from(match self.boundary {
             BoundaryRule::None => "boundary none\n",
             BoundaryRule::EdgeOnly => "boundary edge\n",
@@ -311,20 +311,20 @@ impl Cage {
 }
 
 /// The faces of the last level as plain indices.
-fn listed(faces: &FaceList) -> Vec<Vec<usize>> {
+pub(super) fn listed(faces: &FaceList) -> Vec<Vec<usize>> {
     let ids = (0..faces.len()).map(FaceId::new);
     ids.map(|f| faces.face(f).iter().map(|v| v.index()).collect()).collect()
 }
 
 /// Which vertex of theirs is where one of ours is.
-struct Matching {
-    partner: Vec<Option<usize>>,
+pub(super) struct Matching {
+    pub(super) partner: Vec<Option<usize>>,
     /// The largest distance, of the largest coordinate.
     worst: f64,
 }
 
 impl Matching {
-    fn new(ours: &[DVec3], theirs: &IndexedFaceSet) -> Self {
+    pub(super) fn new(ours: &[DVec3], theirs: &IndexedFaceSet) -> Self {
         let theirs = theirs.positions().values();
         let mut order: Vec<usize> = (0..theirs.len()).collect();
         order.sort_by(|&a, &b| theirs[a].x.total_cmp(&theirs[b].x));
@@ -345,7 +345,7 @@ impl Matching {
         Matching { partner, worst }
     }
 
-    fn verdict(&self, ours: &[Vec<usize>], theirs: &IndexedFaceSet) -> Verdict {
+    pub(super) fn verdict(&self, ours: &[Vec<usize>], theirs: &IndexedFaceSet) -> Verdict {
         let [mine, other] = [self.partner.len(), theirs.vertex_count()];
         if mine != other || ours.len() != theirs.face_count() {
             let (faces, count) = (ours.len(), theirs.face_count());
@@ -377,7 +377,7 @@ impl Matching {
 }
 
 /// The face from its smallest vertex on.
-fn rotated(mut face: Vec<usize>) -> Vec<usize> {
+pub(super) fn rotated(mut face: Vec<usize>) -> Vec<usize> {
     let least = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
     face.rotate_left(least);
     face
