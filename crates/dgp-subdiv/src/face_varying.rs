@@ -297,19 +297,21 @@ fn thirds(
     }
     let (old, new) = (level(plan.levels() - 1), level(plan.levels()));
     let halfedges = 0..old.from.len() as u32;
-    let inner = halfedges.map(|h| [old.corner(h), old.corner(h ^ 1)]).filter(|c| !c.contains(&NONE));
+    let inner =
+        halfedges.map(|h| [old.corner(h), old.corner(h ^ 1)]).filter(|c| !c.contains(&NONE));
     let left_out = data.differing(inner.flat_map(|[c, twin]| across(old, c, twin)));
     for name in &left_out {
         data.remove(name);
     }
     // Without seams all corners at a vertex agree.
-    let stencils = StencilTable::from_rows(old.corner_count(), new.corner_count(), |row, stencil| {
-        let v = new.vertex(row as u32) as usize;
-        match v.checked_sub(old.vertex_count()) {
-            None => stencil.push(old.corner(old.vertex_halfedge[v]), 1.0),
-            Some(face) => old.corners(face as u32).for_each(|c| stencil.push(c, 1.0 / 3.0)),
-        }
-    })?;
+    let stencils =
+        StencilTable::from_rows(old.corner_count(), new.corner_count(), |row, stencil| {
+            let v = new.vertex(row as u32) as usize;
+            match v.checked_sub(old.vertex_count()) {
+                None => stencil.push(old.corner(old.vertex_halfedge[v]), 1.0),
+                Some(face) => old.corners(face as u32).for_each(|c| stencil.push(c, 1.0 / 3.0)),
+            }
+        })?;
     Ok((stencils.apply_attributes(&data)?, left_out))
 }
 

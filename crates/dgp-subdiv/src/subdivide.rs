@@ -105,8 +105,7 @@ pub fn subdivide(
     let result = Selection::new(mesh, &plan);
     let mut refined = result.join(&plan, positions)?;
     progress.report(0.8)?;
-    let left_out =
-        carry(mesh, options, (&plan, &result), &mut refined, progress.part(0.8, 1.0))?;
+    let left_out = carry(mesh, options, (&plan, &result), &mut refined, progress.part(0.8, 1.0))?;
     if let Some(tangents) = tangents {
         let normals = result.normals(&plan, &tangents, &refined);
         refined.attributes_mut().corner.remove(NORMAL);

@@ -16,14 +16,14 @@ use super::{
 };
 use crate::{drive::subdivision::scheme, peers::Driver, raw, shell::Outcome};
 
-/// Our rules, and how the driver calls those of OpenSubdiv.
-const RULES: [(&str, FaceVarying); 6] = [
-    ("all", FaceVarying::Linear),
-    ("corners-only", FaceVarying::Smooth),
-    ("none", FaceVarying::SmoothCorners),
-    ("corners-plus-1", FaceVarying::SharpJunctions),
-    ("corners-plus-2", FaceVarying::SharpEnds),
-    ("boundaries", FaceVarying::SharpRims),
+/// Quantities, how the driver calls the rules of OpenSubdiv, and ours.
+const RULES: [(&str, &str, FaceVarying); 6] = [
+    ("face_varying_all", "all", FaceVarying::Linear),
+    ("face_varying_corners_only", "corners-only", FaceVarying::Smooth),
+    ("face_varying_none", "none", FaceVarying::SmoothCorners),
+    ("face_varying_corners_plus_1", "corners-plus-1", FaceVarying::SharpJunctions),
+    ("face_varying_corners_plus_2", "corners-plus-2", FaceVarying::SharpEnds),
+    ("face_varying_boundaries", "boundaries", FaceVarying::SharpRims),
 ];
 
 /// A mesh with its seams: corners around a vertex share a value between marked edges.
@@ -101,13 +101,10 @@ pub(super) fn compare(driver: &Driver, folder: &Path, table: &mut Table) -> Outc
                         let tags = if sharpness.is_smooth() { "smooth" } else { "creased" };
                         let name_of = format!("{shape}-{percent}-{kind}-{tags}");
                         let cage = Cage { name: name_of, mesh: mesh.clone(), sharpness, boundary };
-                        for (rule, ours) in RULES {
-                            for levels in [1, 3] {
-                                let found =
-                                    one(&cage, &charts, name, (rule, ours), levels, driver, folder);
-                                let label = format!("{}, {levels} levels", cage.name);
-                                table.add(&label, "OpenSubdiv", vec![found?]);
-                            }
+                        for (rule, levels) in RULES.iter().flat_map(|r| [(r, 1), (r, 3)]) {
+                            let found = one(&cage, &charts, (name, levels), rule, driver, folder);
+                            let label = format!("{}, {levels} levels", cage.name);
+                            table.add(&label, "OpenSubdiv", vec![found?]);
                         }
                     }
                 }
@@ -120,13 +117,11 @@ pub(super) fn compare(driver: &Driver, folder: &Path, table: &mut Table) -> Outc
 fn one(
     cage: &Cage,
     charts: &Charts,
-    name: &str,
-    (rule, face_varying): (&str, FaceVarying),
-    levels: usize,
+    (name, levels): (&str, usize),
+    &(quantity, rule, face_varying): &(&str, &str, FaceVarying),
     driver: &Driver,
     folder: &Path,
 ) -> Outcome<Comparison> {
-    let quantity = format!("face_varying_{}", rule.replace('-', "_"));
     let path = folder.join("cage.raw");
     raw::write(&path, &cage.mesh.to_indexed())?;
     let tags = folder.join("cage.tags");
@@ -154,7 +149,7 @@ fn one(
     let faces = listed(&refined.to_faces());
     let verdict = matching.verdict(&faces, &theirs);
     if verdict != Verdict::Same {
-        return Ok(Comparison::without_number(&quantity, verdict));
+        return Ok(Comparison::without_number(quantity, verdict));
     }
     // Where the corners of each of their faces begin, by its vertices.
     let mut starts = HashMap::new();
@@ -183,5 +178,5 @@ fn one(
         Verdict::Differs(format!("off by {worst:e}"))
     };
     let worst = worst / TOLERANCE;
-    Ok(Comparison { quantity, compared, left_out: 0, worst, verdict })
+    Ok(Comparison { quantity: quantity.to_owned(), compared, left_out: 0, worst, verdict })
 }

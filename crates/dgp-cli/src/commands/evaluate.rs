@@ -63,7 +63,8 @@ impl Evaluate {
     pub(crate) fn run(&self, common: &Common) -> Result<ExitCode, Failure> {
         if !matches!(self.cage.scheme, SchemeName::Loop | SchemeName::CatmullClark) {
             let name = self.cage.scheme.name();
-            let message = format!("--scheme {name} cannot be evaluated; take loop or catmull-clark");
+            let message =
+                format!("--scheme {name} cannot be evaluated; take loop or catmull-clark");
             return Err(Failure::Usage(message));
         }
         let mut session = Session::new("evaluate", common);
@@ -77,9 +78,8 @@ impl Evaluate {
         let points = session
             .run("evaluating", |_| evaluate(&plan, &values, &places))
             .map_err(|failure| failure.in_file(path))?;
-        let tangents = plan
-            .limit_tangents(&values)
-            .map_err(|error| Failure::from(error).in_file(path))?;
+        let tangents =
+            plan.limit_tangents(&values).map_err(|error| Failure::from(error).in_file(path))?;
         let normals: Vec<DVec3> =
             places.iter().zip(&points).map(|(p, x)| normal(p, x, &faces, &tangents)).collect();
         let without = normals.iter().filter(|n| **n == DVec3::ZERO).count();

@@ -136,7 +136,8 @@ impl Stencils {
             return Err(Failure::Usage(message));
         }
         if !self.apply.is_empty() && (self.from > 0 || self.is_tangent()) {
-            let message = "--apply takes cages to points: without --from, and --rows refined or limit";
+            let message =
+                "--apply takes cages to points: without --from, and --rows refined or limit";
             return Err(Failure::Usage(message.to_owned()));
         }
         Ok(())

@@ -78,7 +78,11 @@ fn poses_are_refined_by_one_table() {
     let dgp = Dgp::new(&[("cube.off", CUBE), ("long.off", &stretched), ("fewer.off", fewer)]);
     let command = "stencils cube.off --levels 3 --rows limit --apply cube.off long.off --into out";
     let (code, value) = dgp.json(command);
-    assert_eq!((code, value["report"]["applied"].as_array().map(Vec::len)), (0, Some(2)), "{value}");
+    assert_eq!(
+        (code, value["report"]["applied"].as_array().map(Vec::len)),
+        (0, Some(2)),
+        "{value}"
+    );
     dgp.json("subdivide long.off -o r.off --levels 3 --limit");
     let [found, expected] = ["out/long.off", "r.off"].map(|name| read(&dgp, name).set);
     assert_eq!(found.faces(), expected.faces());
@@ -196,7 +200,8 @@ fn textured() -> String {
         text += &format!("v {} {} {} {} {} 0\n", at[0], at[1], at[2], at[0], at[1]);
     }
     text += "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
     for (k, face) in faces.iter().enumerate() {
         let corners: Vec<String> =
             face.iter().zip(1..).map(|(v, t)| format!("{}/{t}", v + 1)).collect();

@@ -2,8 +2,8 @@
 
 use dgp_mesh::{DVec3, Mesh, Progress, VertexId, shapes, topology::euler_characteristic};
 use dgp_subdiv::{
-    AdaptiveOptions, Counts, Error, LoopWeights, RefinementOptions, RefinementPlan, SHARP, Scheme, Sharpness,
-    refine_adaptively, refine_to_tolerance,
+    AdaptiveOptions, Counts, Error, LoopWeights, RefinementOptions, RefinementPlan, SHARP, Scheme,
+    Sharpness, refine_adaptively, refine_to_tolerance,
 };
 
 const LOOP: Scheme = Scheme::Loop(LoopWeights::Original);
@@ -46,7 +46,8 @@ fn split_everywhere_is_the_limit_of_the_refined_mesh() {
             let options = options(scheme, 3);
             let all = refine_adaptively(&mesh, &sharpness, &options, |_, _| true, Progress::NONE)
                 .unwrap();
-            let plan = RefinementPlan::new(&mesh, &sharpness, &options.refinement, Progress::NONE).unwrap();
+            let plan = RefinementPlan::new(&mesh, &sharpness, &options.refinement, Progress::NONE)
+                .unwrap();
             let limits = plan.limit(&plan.refine(mesh.positions().values()).unwrap()).unwrap();
             assert_eq!(all.face_count() as u64, plan.counts(3).faces);
             // Faces come in the same order, corner by corner.

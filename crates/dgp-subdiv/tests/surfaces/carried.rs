@@ -32,8 +32,7 @@ fn options(scheme: Scheme, levels: usize, face_varying: FaceVarying) -> Adaptive
 /// The area of each chart, and whether each corner is in that of its part.
 fn chart_areas(cage: &Mesh, refined: &Mesh) -> Vec<f64> {
     let data = refined.attributes();
-    let (part, uv) =
-        (data.face.get::<u32>("part").unwrap(), data.corner.get::<DVec2>(UV).unwrap());
+    let (part, uv) = (data.face.get::<u32>("part").unwrap(), data.corner.get::<DVec2>(UV).unwrap());
     let mut areas = vec![0.0; cage.face_count()];
     for f in refined.faces() {
         let corners: Vec<DVec2> = refined.face_halfedges(f).map(|h| uv[h]).collect();
@@ -219,7 +218,8 @@ fn bent_triangles_keep_their_data() {
 
 #[test]
 fn two_steps_of_sqrt3_lie_in_the_old_triangles() {
-    let closed = [shapes::octahedron(), shapes::icosahedron(), shapes::torus(2.0, 1.0, 5, 4).unwrap()];
+    let closed =
+        [shapes::octahedron(), shapes::icosahedron(), shapes::torus(2.0, 1.0, 5, 4).unwrap()];
     let open = [shapes::grid(3, 2).unwrap(), shapes::annulus(0.4, 1.0, 7, 2).unwrap()];
     for mesh in closed.into_iter().chain(open) {
         let mesh = decorated(mesh);

@@ -52,7 +52,11 @@ impl Fan {
     fn mesh(scheme: Scheme, faces: usize, spokes: usize, positions: Vec<DVec3>) -> Mesh {
         let corners = |i: usize| {
             let [a, b] = [1 + i, 1 + (i + 1) % spokes];
-            if scheme == Scheme::CatmullClark { vec![0, a, 1 + spokes + i, b] } else { vec![0, a, b] }
+            if scheme == Scheme::CatmullClark {
+                vec![0, a, 1 + spokes + i, b]
+            } else {
+                vec![0, a, b]
+            }
         };
         let list = FaceList::from_indices(&(0..faces).map(corners).collect::<Vec<_>>());
         Mesh::new(&IndexedFaceSet::new(positions, list).unwrap()).unwrap()
@@ -134,11 +138,8 @@ impl Fan {
     /// The faces that `limit_tangents` speaks of: left of the first of two sharp spokes, or all.
     fn sector(&self) -> Vec<usize> {
         let first = self.mesh.vertex_halfedge(CENTER).unwrap();
-        let start = if self.mesh.is_boundary_halfedge(first) {
-            0
-        } else {
-            self.mesh.to(first).index() - 1
-        };
+        let start =
+            if self.mesh.is_boundary_halfedge(first) { 0 } else { self.mesh.to(first).index() - 1 };
         let count = self.spokes.len();
         let order: Vec<usize> = (0..count).map(|k| (start + k) % count).collect();
         let sharp: Vec<usize> = (0..count).filter(|&k| self.spokes[order[k]] >= SHARP).collect();
@@ -330,7 +331,10 @@ fn refinement_approaches_the_limit_at_the_rate_of_the_eigenvalue() {
                 (name.starts_with("crease of") || name.starts_with("rim")).then_some(0.25)
             };
             if let Some(known) = known {
-                assert!((eigenvalue - known).abs() < 1e-6, "{scheme:?} {name}: {eigenvalue} {known}");
+                assert!(
+                    (eigenvalue - known).abs() < 1e-6,
+                    "{scheme:?} {name}: {eigenvalue} {known}"
+                );
             }
         }
     }

@@ -5,9 +5,9 @@ use dgp_mesh::{
     measure::{NormalWeight, bounding_box, vertex_normals},
 };
 use dgp_subdiv::{
-    AdaptiveOptions, ButterflyRule, FaceVarying, LoopWeights, PhongOptions, RefinementOptions, RefinementPlan,
-    Scheme, Sharpness, SubdivisionOptions, Surface, phong_tessellate, refine_adaptively,
-    refine_to_tolerance, subdivide,
+    AdaptiveOptions, ButterflyRule, FaceVarying, LoopWeights, PhongOptions, RefinementOptions,
+    RefinementPlan, Scheme, Sharpness, SubdivisionOptions, Surface, phong_tessellate,
+    refine_adaptively, refine_to_tolerance, subdivide,
 };
 
 use super::{
