@@ -195,7 +195,9 @@ fn fans(scheme: Scheme) -> Vec<(String, Fan, bool)> {
     for d in 3..10 {
         let spokes = |sharp: &[(usize, f64)]| {
             let mut spokes = vec![0.0; d];
-            sharp.iter().for_each(|&(i, s)| spokes[i] = s);
+            for &(i, s) in sharp {
+                spokes[i] = s;
+            }
             spokes
         };
         let mut add = |name: &str, fan: Fan, has_plane| {
