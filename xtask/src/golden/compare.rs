@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 34] = [
+pub(crate) const QUANTITIES: [(&str, &str); 41] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
