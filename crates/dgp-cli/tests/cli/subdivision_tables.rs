@@ -1,7 +1,7 @@
 //! `dgp evaluate` and `dgp stencils`: points at parameters, tables written and applied; data through
 //! `dgp subdivide --adaptive`, Phong tessellation and √3.
 
-use std::fs;
+use std::{fmt::Write, fs};
 
 use dgp::{
     io::Document,
@@ -197,7 +197,7 @@ fn textured() -> String {
     let mut text = String::new();
     for k in 0..8 {
         let at = [k & 1, k >> 1 & 1, k >> 2];
-        text += &format!("v {} {} {} {} {} 0\n", at[0], at[1], at[2], at[0], at[1]);
+        writeln!(text, "v {} {} {} {} {} 0", at[0], at[1], at[2], at[0], at[1]).unwrap();
     }
     text += "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
     let faces =
@@ -205,7 +205,7 @@ fn textured() -> String {
     for (k, face) in faces.iter().enumerate() {
         let corners: Vec<String> =
             face.iter().zip(1..).map(|(v, t)| format!("{}/{t}", v + 1)).collect();
-        text += &format!("g side{k}\nf {}\n", corners.join(" "));
+        writeln!(text, "g side{k}\nf {}", corners.join(" ")).unwrap();
     }
     text
 }
