@@ -237,7 +237,9 @@ impl RefinementPlan {
 
     /// The tangents of the limit surface at the vertices of the last level, given their values; the cross
     /// product of the first and the second points outward. Their lengths mean nothing. At a crease they
-    /// are those of the surface to its left, at a corner those of the first sector.
+    /// are those of the surface to its left, at a corner those of the first sector. Beside a crease or rim that
+    /// bounds more than 3 quadrilaterals or 5 triangles there is no tangent plane; these are the directions
+    /// along it and of the first wave across.
     ///
     /// Errors: [`Error::NoLimit`] unless the scheme is Loop, Catmull–Clark or bilinear;
     /// [`Error::WrongLength`].
