@@ -1,6 +1,7 @@
 // OpenSubdiv behind the protocol of protocol.hpp.
 //
-// Tags are lines of text: `crease A B SHARPNESS`, `corner V SHARPNESS`, `boundary none|edge|corner`.
+// Tags are lines of text: `crease A B SHARPNESS`, `corner V SHARPNESS`, `boundary none|edge|corner`,
+// `fvar RULE`, `uv U V` for each value of face-varying data, `corner_uv INDEX` for each corner.
 #include "protocol.hpp"
 
 #include <opensubdiv/far/primvarRefiner.h>
@@ -26,10 +27,22 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 24);
 
+struct TexturePoint {
+    double u = 0, v = 0;
+
+    void Clear(void* = nullptr) { u = v = 0; }
+    void AddWithWeight(const TexturePoint& other, double weight) {
+        u += weight * other.u;
+        v += weight * other.v;
+    }
+};
+
 // A cage as the library wants it described.
 struct Cage {
-    std::vector<int> degrees, corners, crease_vertices, corner_vertices;
+    std::vector<int> degrees, corners, crease_vertices, corner_vertices, corner_values;
     std::vector<float> creases, sharp_corners;
+    std::vector<TexturePoint> values;
+    Far::TopologyDescriptor::FVarChannel channel;
     Far::TopologyDescriptor descriptor;
     Sdc::Options options;
     Sdc::SchemeType scheme;
@@ -52,6 +65,11 @@ struct Cage {
         descriptor.numCorners = int(sharp_corners.size());
         descriptor.cornerVertexIndices = corner_vertices.data();
         descriptor.cornerWeights = sharp_corners.data();
+        if (values.empty()) return;
+        channel.numValues = int(values.size());
+        channel.valueIndices = corner_values.data();
+        descriptor.numFVarChannels = 1;
+        descriptor.fvarChannels = &channel;
     }
 
     std::unique_ptr<Far::TopologyRefiner> refiner(int levels, bool all) const {
@@ -87,6 +105,25 @@ private:
                     rule == "corner" ? Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER
                     : rule == "edge" ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
                                      : Sdc::Options::VTX_BOUNDARY_NONE);
+            } else if (kind == "fvar") {
+                std::string rule;
+                in >> rule;
+                options.SetFVarLinearInterpolation(
+                    rule == "none" ? Sdc::Options::FVAR_LINEAR_NONE
+                    : rule == "corners-only" ? Sdc::Options::FVAR_LINEAR_CORNERS_ONLY
+                    : rule == "corners-plus-1" ? Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1
+                    : rule == "corners-plus-2" ? Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2
+                    : rule == "boundaries" ? Sdc::Options::FVAR_LINEAR_BOUNDARIES
+                    : rule == "all" ? Sdc::Options::FVAR_LINEAR_ALL
+                                    : throw std::runtime_error("no rule " + rule));
+            } else if (kind == "uv") {
+                TexturePoint value;
+                in >> value.u >> value.v;
+                values.push_back(value);
+            } else if (kind == "corner_uv") {
+                int value;
+                in >> value;
+                corner_values.push_back(value);
             } else {
                 throw std::runtime_error("no tag " + kind);
             }
@@ -114,6 +151,28 @@ std::vector<Vertex> interpolated(const Far::TopologyRefiner& refiner, const std:
     return all;
 }
 
+// The face-varying values of the corners of the last level, face by face.
+void texture(const Far::TopologyRefiner& refiner, const Cage& cage, const Call& call) {
+    const Far::PrimvarRefinerReal<double> primvar(refiner);
+    std::vector<TexturePoint> now = cage.values;
+    for (int level = 1; level <= call.levels; ++level) {
+        std::vector<TexturePoint> next(std::size_t(refiner.GetLevel(level).GetNumFVarValues()));
+        primvar.InterpolateFaceVarying(level, now, next);
+        now.swap(next);
+    }
+    const auto level = refiner.GetLevel(call.levels);
+    std::vector<double> numbers;
+    for (int f = 0; f < level.GetNumFaces(); ++f) {
+        if (level.IsFaceHole(f)) continue;
+        const auto corners = level.GetFaceFVarValues(f);
+        for (int k = 0; k < corners.size(); ++k) {
+            const TexturePoint& value = now[std::size_t(corners[k])];
+            numbers.insert(numbers.end(), {value.u, value.v});
+        }
+    }
+    column(call.out, "uv", numbers);
+}
+
 void subdivide(Report& report, const Raw& raw, const Call& call) {
     const Cage cage(raw, call);
     const auto refiner = cage.refiner(call.levels, true);
@@ -139,6 +198,7 @@ void subdivide(Report& report, const Raw& raw, const Call& call) {
         for (const auto& p : *values) numbers.insert(numbers.end(), {p.x, p.y, p.z});
         column(call.out, name, numbers);
     }
+    if (!cage.values.empty()) texture(*refiner, cage, call);
     report.number("vertices", double(count));
     report.number("faces", double(out.faces()));
 }

@@ -180,6 +180,7 @@ fn remedy(error: &dgp::subdiv::Error) -> &'static str {
         Error::NotTriangle { .. } => "; `dgp convert --triangulate` cuts all faces",
         Error::IsolatedVertex { .. } => "; `dgp repair` does",
         Error::TooLarge { .. } => " with --memory-limit",
+        Error::NotQuad { .. } => ", with --levels 1",
         _ => "",
     }
 }

@@ -9,41 +9,62 @@
 //! out once. So faces of different levels meet exactly; a face beside smaller ones has more corners, which
 //! [`dgp_mesh::triangulate`] or the caller may cut.
 //!
+//! Data travel the same way: those of vertices to the limit of their own values; those of corners within
+//! charts, where a vertex has one value, so that a face gets at the vertices of a smaller neighbor across a
+//! seam the values of its own chart; those of faces and edges to their parts.
+//!
 //! - Input: as for [`RefinementPlan::new`](crate::RefinementPlan::new), for Loop and Catmull–Clark.
 //! - Cost: O(faces split and what touches them) per level.
-//! - Guarantees: a manifold with the Euler characteristic of the cage; vertices on the limit surface.
+//! - Guarantees: a manifold with the Euler characteristic of the cage; vertices on the limit surface; corners
+//!   whose values agree in the cage agree in the result.
 //! - Reference: none; the support ring is that of feature-adaptive refinement (Nießner et al., "Feature-
 //!   adaptive GPU rendering of Catmull–Clark subdivision surfaces", 2012).
 
-use std::collections::HashMap;
+mod data;
+mod join;
+mod patch;
 
-use dgp_mesh::{Connectivity, DVec3, FaceList, Mesh, Progress, VertexId};
+use dgp_mesh::{DVec3, Mesh, Progress};
 
+use self::{
+    data::{Carried, Data},
+    patch::{Layer, Patch, Vertices, bytes_of},
+};
 use crate::{
-    Counts, Error, RefinementOptions, RefinementPlan, Scheme, Sharpness,
+    Error, FaceVarying, RefinementOptions, RefinementPlan, Scheme, Sharpness,
+    face_varying::{Charts, by_corner},
     limit::{Limit, LimitMasks},
     masks,
     plan::Level,
-    primal::{Kind, Primal},
-    sharpness::Creases,
+    primal::Kind,
     split::{split_polygons, split_triangles},
     subdivide::check_finite,
-    topology::{NONE, Topology},
 };
 
-/// The limit surface of `mesh` with faces split where `wants_split` says so, at most `options.levels` times,
-/// without attributes. `wants_split` gets the level of a face and its corners on the limit surface.
+/// How [`refine_adaptively`] and [`refine_to_tolerance`] refine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AdaptiveOptions {
+    /// Scheme, how often faces are split at most, rims, memory. Faces at holes cannot be left out:
+    /// [`BoundaryRule::None`](crate::BoundaryRule::None) is taken as `EdgeOnly`.
+    pub refinement: RefinementOptions,
+    /// How data of corners, such as texture coordinates, are refined.
+    pub face_varying: FaceVarying,
+}
+
+/// The limit surface of `mesh` with faces split where `wants_split` says so, at most
+/// `options.refinement.levels` times, with its data but sharpness. `wants_split` gets the level of a face
+/// and its corners on the limit surface.
 ///
 /// Errors: those of [`RefinementPlan::new`]; [`Error::NoLimit`] unless the scheme is Loop or
-/// Catmull–Clark; [`Error::TooLarge`] once what is asked for needs more than `options.memory_limit`;
-/// [`Error::NotFinite`]; [`Error::Cancelled`]. `options.boundary` may not leave faces out: `None` is taken
-/// as `EdgeOnly`.
+/// Catmull–Clark; [`Error::TooLarge`] once what is asked for needs more than the memory limit;
+/// [`Error::NotFinite`]; [`Error::Cancelled`].
 ///
 /// ```
 /// use dgp_mesh::{Progress, shapes};
-/// use dgp_subdiv::{RefinementOptions, Sharpness, refine_adaptively};
+/// use dgp_subdiv::{AdaptiveOptions, RefinementOptions, Sharpness, refine_adaptively};
 ///
-/// let options = RefinementOptions { levels: 6, ..RefinementOptions::default() };
+/// let refinement = RefinementOptions { levels: 6, ..RefinementOptions::default() };
+/// let options = AdaptiveOptions { refinement, ..AdaptiveOptions::default() };
 /// let top = |_: usize, corners: &[dgp_mesh::DVec3]| corners.iter().any(|p| p.z > 0.25);
 /// let mesh = refine_adaptively(&shapes::cube(), &Sharpness::new(), &options, top, Progress::NONE)?;
 /// assert_eq!(dgp_mesh::topology::euler_characteristic(&mesh), 2);
@@ -52,12 +73,12 @@ use crate::{
 pub fn refine_adaptively(
     mesh: &Mesh,
     sharpness: &Sharpness,
-    options: &RefinementOptions,
+    options: &AdaptiveOptions,
     wants_split: impl Fn(usize, &[DVec3]) -> bool,
     progress: Progress<'_>,
 ) -> Result<Mesh, Error> {
     let choose = |patch: &Patch, level: usize, vertices: &Vertices, _: u64| {
-        let leaves = if level < options.levels { patch.leaves } else { 0 };
+        let leaves = if level < options.refinement.levels { patch.leaves } else { 0 };
         Ok(patch.asked(0..leaves as u32, level, vertices, &wants_split))
     };
     refine(mesh, sharpness, options, choose, progress)
@@ -76,7 +97,7 @@ pub struct ToleranceReport {
 }
 
 /// The limit surface of `mesh` with faces split until they are as flat as `tolerance`, a length, at most
-/// `options.levels` times, without attributes.
+/// `options.refinement.levels` times, with its data but sharpness.
 ///
 /// Each face is split once, so that a bend and its opposite on one edge are seen. From then on it is split
 /// if a corner or the middle of the surface above it is farther than `tolerance` from its plane, or the
@@ -86,9 +107,10 @@ pub struct ToleranceReport {
 ///
 /// ```
 /// use dgp_mesh::{Progress, shapes};
-/// use dgp_subdiv::{RefinementOptions, Sharpness, refine_to_tolerance};
+/// use dgp_subdiv::{AdaptiveOptions, RefinementOptions, Sharpness, refine_to_tolerance};
 ///
-/// let options = RefinementOptions { levels: 8, ..RefinementOptions::default() };
+/// let refinement = RefinementOptions { levels: 8, ..RefinementOptions::default() };
+/// let options = AdaptiveOptions { refinement, ..AdaptiveOptions::default() };
 /// let (cube, smooth) = (shapes::cube(), Sharpness::new());
 /// let (mesh, report) = refine_to_tolerance(&cube, &smooth, &options, 1e-3, Progress::NONE)?;
 /// assert!(report.faces_beyond == 0 && report.largest_deviation <= 1e-3);
@@ -98,7 +120,7 @@ pub struct ToleranceReport {
 pub fn refine_to_tolerance(
     mesh: &Mesh,
     sharpness: &Sharpness,
-    options: &RefinementOptions,
+    options: &AdaptiveOptions,
     tolerance: f64,
     progress: Progress<'_>,
 ) -> Result<(Mesh, ToleranceReport), Error> {
@@ -106,14 +128,14 @@ pub fn refine_to_tolerance(
         let (name, expected) = ("tolerance", "positive");
         return Err(Error::InvalidOption { name, value: tolerance, expected });
     }
-    let kind = kind(options.scheme)?;
+    let RefinementOptions { scheme, levels, memory_limit: limit, .. } = options.refinement;
+    let kind = kind(scheme)?;
     let mut report = ToleranceReport::default();
     let choose = |patch: &Patch, level: usize, vertices: &Vertices, bytes: u64| {
         report.levels = level;
         let mut asked = Vec::new();
-        let limit = options.memory_limit;
         for (f, deviation) in (0..).zip(patch.deviations(kind, vertices, (bytes, limit), level)?) {
-            if level < options.levels && (level == 0 || deviation > tolerance) {
+            if level < levels && (level == 0 || deviation > tolerance) {
                 asked.push(f);
             } else {
                 report.largest_deviation = report.largest_deviation.max(deviation);
@@ -138,105 +160,80 @@ fn kind(scheme: Scheme) -> Result<Kind, Error> {
 fn refine(
     mesh: &Mesh,
     sharpness: &Sharpness,
-    options: &RefinementOptions,
+    options: &AdaptiveOptions,
     mut choose: impl FnMut(&Patch, usize, &Vertices, u64) -> Result<Vec<u32>, Error>,
     progress: Progress<'_>,
 ) -> Result<Mesh, Error> {
     check_finite(mesh.positions().values())?;
-    let kind = kind(options.scheme)?;
+    let RefinementOptions { scheme, levels, memory_limit: limit, .. } = options.refinement;
+    let kind = kind(scheme)?;
     // Checks the cage; its levels are made here.
-    let cage = RefinementOptions { levels: 0, ..*options };
+    let cage = RefinementOptions { levels: 0, ..options.refinement };
     let plan = RefinementPlan::new(mesh, sharpness, &cage, progress.part(0.0, 0.1))?;
-    let Level { topology, creases, .. } = plan.last();
-    let mut vertices = Vertices::default();
-    let ids = (0..mesh.vertex_count()).map(|_| vertices.add()).collect();
-    let mut patches = vec![Patch {
-        leaves: topology.face_count(),
-        topology: topology.clone(),
-        creases: creases.clone(),
-        values: mesh.positions().values().to_vec(),
-        ids,
-        asked: Vec::new(),
-        part_edges: HashMap::new(),
-    }];
+    let (mut vertices, mut patches) = (Vertices::default(), Vec::new());
+    let (first, mut data) = start(mesh, &plan, options.face_varying, &mut vertices)?;
+    patches.push(first);
     let mut bytes = plan.predicted_bytes();
-    for level in 0..=options.levels {
-        progress.report(0.1 + 0.7 * level as f64 / (options.levels + 1) as f64)?;
-        let patch = &mut patches[level];
+    for level in 0..=levels {
+        progress.report(0.1 + 0.7 * level as f64 / (levels + 1) as f64)?;
+        let patch: &mut Patch = &mut patches[level];
         patch.place(kind, &mut vertices);
         check_finite(&vertices.positions)?;
         let asked = choose(patch, level, &vertices, bytes)?;
-        if level == options.levels || asked.is_empty() {
+        if level == levels || asked.is_empty() {
             break;
         }
         patch.asked = asked;
-        let next = patch.split(kind, &mut vertices);
+        let next = patch.split(kind, &mut vertices, &mut data);
         bytes = bytes.saturating_add(next.bytes());
-        if bytes > options.memory_limit {
-            let (faces, limit) = (next.leaves as u64, options.memory_limit);
+        if bytes > limit {
+            let faces = next.leaves as u64;
             return Err(Error::TooLarge { level: level + 1, faces, bytes, limit });
         }
         patches.push(next);
     }
-    let result = join(&patches, &vertices)?;
+    let result = join::join(mesh, &patches, &vertices, &mut data, kind)?;
     progress.report(1.0)?;
     Ok(result)
 }
 
-/// The vertices of all levels; one that several levels have is one.
-#[derive(Default)]
-struct Vertices {
-    positions: Vec<DVec3>,
-    is_placed: Vec<bool>,
-}
-
-impl Vertices {
-    fn add(&mut self) -> u32 {
-        self.positions.push(DVec3::ZERO);
-        self.is_placed.push(false);
-        self.positions.len() as u32 - 1
+/// The cage, and its data.
+fn start(
+    mesh: &Mesh,
+    plan: &RefinementPlan,
+    rule: FaceVarying,
+    vertices: &mut Vertices,
+) -> Result<(Patch, Data), Error> {
+    let Level { topology, creases, .. } = plan.last();
+    let ids = (0..mesh.vertex_count()).map(|_| vertices.add()).collect();
+    let attributes = mesh.attributes();
+    let mut data = Data { vertex: None, corner: None };
+    if !attributes.vertex.is_empty() {
+        data.vertex = Some(Carried::new(attributes.vertex.clone(), false));
     }
-}
-
-/// What is there of a level: faces of the result or to be split, then others that support them.
-struct Patch {
-    topology: Topology,
-    creases: Creases,
-    /// Where vertices are at this level, not yet on the limit surface.
-    values: Vec<DVec3>,
-    /// Which vertex of all it is.
-    ids: Vec<u32>,
-    /// How many faces are not just support.
-    leaves: usize,
-    /// Those of them to be split, in order.
-    asked: Vec<u32>,
-    /// For each edge of a face that is split its number in the part that is split.
-    part_edges: HashMap<u32, u32>,
+    let mut charts = None;
+    if !attributes.corner.is_empty() {
+        let corners = by_corner(mesh, topology);
+        let cut = Charts::new(plan.last(), &corners, rule)?;
+        let cut_plan = cut.plan(plan, Progress::NONE)?;
+        let Level { topology, creases, .. } = cut_plan.last();
+        let ids = (0..topology.vertex_count() as u32).collect();
+        charts = Some(Layer::new(topology, creases, ids));
+        data.corner = Some(Carried::new(cut.values(&corners), rule == FaceVarying::Linear));
+    }
+    let patch = Patch {
+        surface: Layer::new(topology, creases, ids),
+        charts,
+        values: mesh.positions().values().to_vec(),
+        leaves: topology.face_count(),
+        asked: Vec::new(),
+        cage_faces: (0..topology.face_count() as u32).collect(),
+        cage_edges: (0..topology.edge_count() as u32).collect(),
+    };
+    Ok((patch, data))
 }
 
 impl Patch {
-    /// Puts the corners of leaves onto the limit surface.
-    fn place(&self, kind: Kind, vertices: &mut Vertices) {
-        let Patch { topology, creases, .. } = self;
-        let masks = LimitMasks { topology, creases, kind, what: Limit::Position };
-        let limits = masks::apply(&masks, &self.values);
-        for c in (0..self.leaves as u32).flat_map(|f| topology.corners(f)) {
-            let v = topology.vertex(c) as usize;
-            let id = self.ids[v] as usize;
-            if !vertices.is_placed[id] {
-                vertices.is_placed[id] = true;
-                vertices.positions[id] = limits[v];
-            }
-        }
-    }
-
-    /// Where the corners of a leaf are on the limit surface.
-    fn corners(&self, f: u32, vertices: &Vertices, corners: &mut Vec<DVec3>) {
-        corners.clear();
-        let id = |c: u32| self.ids[self.topology.vertex(c) as usize] as usize;
-        corners.extend(self.topology.corners(f).map(|c| vertices.positions[id(c)]));
-    }
-
     /// Those of `leaves` that are to be split.
     fn asked(
         &self,
@@ -265,7 +262,8 @@ impl Patch {
         if leaves.is_empty() {
             return Ok(Vec::new());
         }
-        let Part { topology: part, creases, values, .. } = self.part(&leaves, kind);
+        let (part, values) = self.part(&leaves, kind);
+        let (part, creases) = (part.topology, part.creases);
         let topology = match kind {
             Kind::Loop(_) => split_triangles(&part),
             Kind::CatmullClark | Kind::Bilinear => split_polygons(&part),
@@ -298,81 +296,6 @@ impl Patch {
         };
         Ok(leaves.iter().map(deviation).collect())
     }
-
-    /// `faces` and all that touch them, refined once.
-    fn part(&self, asked: &[u32], kind: Kind) -> Part {
-        let topology = &self.topology;
-        let mut is_in = vec![false; topology.face_count()];
-        let mut faces = asked.to_vec();
-        for &f in &faces {
-            is_in[f as usize] = true;
-        }
-        let mut spokes = Vec::new();
-        for c in asked.iter().flat_map(|&f| topology.corners(f)) {
-            topology.spokes(topology.vertex(c) as usize, &mut spokes);
-            for corner in spokes.iter().map(|&h| topology.corner(h)).filter(|&c| c != NONE) {
-                let f = topology.face(corner);
-                if !is_in[f as usize] {
-                    is_in[f as usize] = true;
-                    faces.push(f);
-                }
-            }
-        }
-        let (part, vertices, edges) = topology.part(&faces);
-        let sharp_edges = edges.iter().map(|&e| self.creases.edge(topology, e as usize)).collect();
-        let sharp = vertices.iter().map(|&v| self.creases.vertex(v as usize)).collect();
-        let creases = Creases::listed(sharp_edges, sharp);
-        let old: Vec<DVec3> = vertices.iter().map(|&v| self.values[v as usize]).collect();
-        let values = masks::apply(&Primal::new(&part, &creases, kind), &old);
-        Part { topology: part, creases, values, vertices, edges }
-    }
-
-    /// Splits the faces asked for, with all that touch them.
-    fn split(&mut self, kind: Kind, vertices: &mut Vertices) -> Patch {
-        let Part { topology: part, creases, values, vertices: part_vertices, edges: part_edges } =
-            self.part(&self.asked, kind);
-        let mut ids: Vec<u32> = part_vertices.iter().map(|&v| self.ids[v as usize]).collect();
-        ids.resize_with(values.len(), || vertices.add());
-        // The faces asked for come first in the part, and so do their children.
-        let corners = part.corners(self.asked.len() as u32 - 1).end as usize;
-        let (topology, leaves) = match kind {
-            Kind::Loop(_) => (split_triangles(&part), 4 * self.asked.len()),
-            Kind::CatmullClark | Kind::Bilinear => (split_polygons(&part), corners),
-        };
-        let of_asked = part.corner_halfedge[..corners].iter().map(|&h| h / 2);
-        self.part_edges = of_asked.map(|e| (part_edges[e as usize], e)).collect();
-        let creases = creases.refined();
-        let (asked, part_edges) = (Vec::new(), HashMap::new());
-        Patch { topology, creases, values, ids, leaves, asked, part_edges }
-    }
-
-    fn bytes(&self) -> u64 {
-        bytes_of(&self.topology)
-    }
-}
-
-/// Faces that are split with all that touch them.
-struct Part {
-    /// As it is before the split.
-    topology: Topology,
-    creases: Creases,
-    /// Where vertices are after it.
-    values: Vec<DVec3>,
-    /// Which vertices and edges of the patch its own are.
-    vertices: Vec<u32>,
-    edges: Vec<u32>,
-}
-
-fn bytes_of(topology: &Topology) -> u64 {
-    let counts = Counts {
-        vertices: topology.vertex_count() as u64,
-        edges: topology.edge_count() as u64,
-        corners: topology.corner_count() as u64,
-        faces: topology.face_count() as u64,
-    };
-    let none =
-        RefinementOptions { levels: 0, memory_limit: u64::MAX, ..RefinementOptions::default() };
-    none.predict(counts).map_or(u64::MAX, |(_, bytes)| bytes)
 }
 
 fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
@@ -392,49 +315,4 @@ fn distance_to_plane(corners: &[DVec3], point: Option<DVec3>) -> f64 {
     let normal = normal.normalize_or_zero();
     let points = corners.iter().copied().chain(point);
     points.map(|p| (p - center).dot(normal).abs()).fold(0.0, f64::max)
-}
-
-/// The leaves of all levels that are not split, with the vertices on their sides.
-fn join(patches: &[Patch], vertices: &Vertices) -> Result<Mesh, Error> {
-    let mut number = vec![NONE; vertices.positions.len()];
-    let mut positions = Vec::new();
-    let mut list = FaceList::new();
-    let (mut ids, mut face) = (Vec::new(), Vec::new());
-    for (level, patch) in patches.iter().enumerate() {
-        let mut asked = patch.asked.iter().copied().peekable();
-        for f in 0..patch.leaves as u32 {
-            if asked.next_if_eq(&f).is_some() {
-                continue;
-            }
-            ids.clear();
-            for c in patch.topology.corners(f) {
-                ids.push(patch.ids[patch.topology.vertex(c) as usize]);
-                side(patches, level, patch.topology.corner_halfedge[c as usize], &mut ids);
-            }
-            face.clear();
-            for &id in &ids {
-                if number[id as usize] == NONE {
-                    number[id as usize] = positions.len() as u32;
-                    positions.push(vertices.positions[id as usize]);
-                }
-                face.push(VertexId::new(number[id as usize] as usize));
-            }
-            list.push(&face);
-        }
-    }
-    let connectivity = Connectivity::from_faces(positions.len(), &list)?;
-    Ok(Mesh::from_parts(connectivity, positions.into()))
-}
-
-/// Adds the vertices that splits have put on a half-edge, in order.
-fn side(patches: &[Patch], level: usize, halfedge: u32, ids: &mut Vec<u32>) {
-    let Some(&edge) = patches[level].part_edges.get(&(halfedge / 2)) else {
-        return;
-    };
-    // The halves, numbered as the split numbers them, along the half-edge; see `split`.
-    let along = 2 * edge + halfedge % 2;
-    let next = &patches[level + 1];
-    side(patches, level + 1, 2 * along, ids);
-    ids.push(next.ids[next.topology.to(2 * along) as usize]);
-    side(patches, level + 1, 2 * (along ^ 1) + 1, ids);
 }

@@ -47,7 +47,7 @@ mod stencil;
 mod subdivide;
 mod topology;
 
-pub use adaptive::{ToleranceReport, refine_adaptively, refine_to_tolerance};
+pub use adaptive::{AdaptiveOptions, ToleranceReport, refine_adaptively, refine_to_tolerance};
 pub use error::Error;
 pub use evaluate::SurfacePoint;
 pub use face_varying::FaceVarying;

@@ -18,7 +18,8 @@
 //!   SIGGRAPH 1993; Biermann, Levin and Zorin, "Piecewise smooth subdivision surfaces with normal control",
 //!   SIGGRAPH 2000 (the analysis at creases).
 //! - Departs from it: creases keep the plain rule at irregular vertices too, so their tangents are those
-//!   of that rule and not of the one the paper changes.
+//!   of that rule and not of the one the paper changes. Where a crease bounds 4 or more quadrilaterals, or 6 or
+//!   more triangles, that rule has no tangent plane: other waves across shrink no faster than the crease.
 
 use std::f64::consts::{PI, TAU};
 

@@ -5,13 +5,16 @@
 //! p = (1 − α)(u p₀ + v p₁ + w p₂) + α p*       π_i(q) = q − ((q − p_i)·n_i) n_i
 //! ```
 //!
+//! Data of vertices and of corners are flat: mixed by u, v, w, those of corners within each triangle.
+//!
 //! - Input: triangles, a unit normal per vertex.
 //! - Cost: O(segments² F).
 //! - Guarantees: vertices stay; a point on an edge depends on its ends only, so there are no cracks.
 //! - Reference: Boubekeur and Alexa, "Phong tessellation", SIGGRAPH Asia 2008.
 
 use dgp_mesh::{
-    Connectivity, DVec3, EdgeId, FaceId, FaceList, HalfedgeId, Mesh, Progress, VertexId, VertexMap,
+    AttributeTable, Connectivity, DVec3, EdgeId, FaceId, FaceList, HalfedgeId, Mesh, Progress,
+    VertexId, VertexMap,
 };
 
 use crate::{Counts, Error, RefinementOptions, subdivide::check_finite};
@@ -35,7 +38,7 @@ impl Default for PhongOptions {
 }
 
 /// `mesh` with each triangle cut into `segments`² that are bent by `normals`, unit vectors one per
-/// vertex; without attributes. Vertices keep their numbers, points on edges and in faces follow.
+/// vertex; with its data. Vertices keep their numbers, points on edges and in faces follow.
 ///
 /// Errors: [`Error::NotTriangle`], [`Error::NotFinite`], [`Error::TooLarge`],
 /// [`Error::InvalidOption`], [`Error::WrongLength`], [`Error::Cancelled`].
@@ -60,7 +63,11 @@ pub fn phong_tessellate(
     progress.report(0.5)?;
     check_finite(&positions)?;
     let connectivity = Connectivity::from_faces(positions.len(), &faces)?;
-    Ok(Mesh::from_parts(connectivity, positions.into()))
+    let mut bent = Mesh::from_parts(connectivity, positions.into());
+    progress.report(0.8)?;
+    cut.carry(&faces, &mut bent);
+    progress.report(1.0)?;
+    Ok(bent)
 }
 
 impl PhongOptions {
@@ -131,43 +138,123 @@ impl Cut<'_> {
     }
 
     fn positions(&self) -> Vec<DVec3> {
-        let n = self.n as f64;
         let mut positions = self.mesh.positions().values().to_vec();
-        for e in self.mesh.edges() {
-            let [a, b] = self.mesh.edge_vertices(e);
-            let points = (1..self.n).map(|i| {
-                let t = i as f64 / n;
-                self.point([a, b, b], [1.0 - t, t, 0.0])
-            });
-            positions.extend(points);
-        }
-        for f in self.mesh.faces() {
-            let corners = self.mesh.triangle(f).expect("checked before");
-            for i in 1..self.n {
-                let points = (1..self.n - i).map(|j| {
-                    let (v, w) = (i as f64 / n, j as f64 / n);
-                    self.point(corners, [1.0 - v - w, v, w])
-                });
-                positions.extend(points);
-            }
-        }
+        self.each_point(|corners, weights| positions.push(self.point(corners, weights)));
         positions
     }
 
-    fn faces(&self) -> FaceList {
-        let mut triangles = Vec::with_capacity(self.mesh.face_count() * self.n * self.n);
-        for f in self.mesh.faces() {
-            let at = |i: usize, j: usize| VertexId::new(self.number(f, i, j));
-            for i in 0..self.n {
-                for j in 0..self.n - i {
-                    triangles.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
-                    if i + j + 1 < self.n {
-                        triangles.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
-                    }
+    /// The corners and weights of each new point, in the order of their numbers.
+    fn each_point(&self, mut f: impl FnMut([VertexId; 3], [f64; 3])) {
+        let n = self.n as f64;
+        for e in self.mesh.edges() {
+            let [a, b] = self.mesh.edge_vertices(e);
+            for i in 1..self.n {
+                let t = i as f64 / n;
+                f([a, b, b], [1.0 - t, t, 0.0]);
+            }
+        }
+        for face in self.mesh.faces() {
+            let corners = self.mesh.triangle(face).expect("checked before");
+            for i in 1..self.n {
+                for j in 1..self.n - i {
+                    let (v, w) = (i as f64 / n, j as f64 / n);
+                    f(corners, [1.0 - v - w, v, w]);
                 }
             }
         }
+    }
+
+    /// The parts of a triangle, each corner by its steps toward the second and the third corner.
+    fn parts(&self) -> Vec<[[usize; 2]; 3]> {
+        let mut parts = Vec::with_capacity(self.n * self.n);
+        for i in 0..self.n {
+            for j in 0..self.n - i {
+                parts.push([[i, j], [i + 1, j], [i, j + 1]]);
+                if i + j + 1 < self.n {
+                    parts.push([[i + 1, j], [i + 1, j + 1], [i, j + 1]]);
+                }
+            }
+        }
+        parts
+    }
+
+    fn faces(&self) -> FaceList {
+        let parts = self.parts();
+        let at = |f: FaceId, [i, j]: [usize; 2]| VertexId::new(self.number(f, i, j));
+        let mut triangles = Vec::with_capacity(self.mesh.face_count() * parts.len());
+        for f in self.mesh.faces() {
+            triangles.extend(parts.iter().map(|part| part.map(|step| at(f, step))));
+        }
         FaceList::from_triangles(triangles)
+    }
+
+    /// Gives `bent`, which has these faces, the data of the mesh.
+    fn carry(&self, faces: &FaceList, bent: &mut Mesh) {
+        let old = self.mesh.attributes();
+        if !old.vertex.is_empty() {
+            let mut vertex = old.vertex.clone();
+            self.each_point(|[p, q, r], [u, v, w]| {
+                vertex.push_mixed(&[(u, p), (v, q), (w, r)]);
+            });
+            bent.attributes_mut().vertex = vertex;
+        }
+        let parts = self.parts();
+        if !old.face.is_empty() {
+            let pick = |f: FaceId| Some(FaceId::new(f.index() / parts.len()));
+            bent.attributes_mut().face = old.face.gather(bent.face_count(), pick);
+        }
+        if !old.corner.is_empty() {
+            bent.attributes_mut().corner = self.corners(&parts, faces, bent);
+        }
+        if !old.edge.is_empty() {
+            let mut source = vec![None; bent.edge_count()];
+            for e in self.mesh.edges() {
+                let h = e.halfedge();
+                let end = |i: usize| match i {
+                    0 => self.mesh.from(h),
+                    i if i == self.n => self.mesh.to(h),
+                    i => VertexId::new(self.on_edge(h, i)),
+                };
+                for i in 0..self.n {
+                    if let Some(part) = bent.halfedge_between(end(i), end(i + 1)) {
+                        source[part.edge().index()] = Some(e);
+                    }
+                }
+            }
+            let pick = |e: EdgeId| source[e.index()];
+            bent.attributes_mut().edge = old.edge.gather(source.len(), pick);
+        }
+    }
+
+    /// The data of the corners of `bent`.
+    fn corners(
+        &self,
+        parts: &[[[usize; 2]; 3]],
+        faces: &FaceList,
+        bent: &Mesh,
+    ) -> AttributeTable<HalfedgeId> {
+        let n = self.n as f64;
+        let mut data = self.mesh.attributes().corner.clone();
+        let mut rows = vec![None; bent.halfedge_count()];
+        for f in self.mesh.faces() {
+            let sides: Vec<HalfedgeId> = self.mesh.face_halfedges(f).collect();
+            let corners = self.mesh.triangle(f).expect("checked before").map(|v| {
+                let side = sides.iter().find(|&&h| self.mesh.from(h) == v);
+                *side.expect("a side leaves a corner")
+            });
+            for (k, part) in parts.iter().enumerate() {
+                let child = FaceId::new(f.index() * parts.len() + k);
+                for h in bent.face_halfedges(child) {
+                    let place = faces.face(child).iter().position(|&v| v == bent.from(h));
+                    let [i, j] = part[place.expect("a side leaves a corner")];
+                    let weights =
+                        [(self.n - i - j) as f64, i as f64, j as f64].map(|share| share / n);
+                    let mix = [0, 1, 2].map(|k| (weights[k], corners[k]));
+                    rows[h.index()] = Some(data.push_mixed(&mix));
+                }
+            }
+        }
+        data.gather(rows.len(), |h: HalfedgeId| rows[h.index()])
     }
 
     /// The number of the point `i` steps toward the second corner and `j` toward the third.

@@ -12,6 +12,7 @@ use crate::{
     Counts, Error, RefinementOptions, Scheme, Sharpness, StencilTable,
     butterfly::Butterfly,
     doo_sabin::{self, DooSabin},
+    face_varying::faces_of_thirds,
     limit::{Limit, LimitMasks},
     masks::{self, Masks, Value},
     options::BoundaryRule,
@@ -236,7 +237,9 @@ impl RefinementPlan {
 
     /// The tangents of the limit surface at the vertices of the last level, given their values; the cross
     /// product of the first and the second points outward. Their lengths mean nothing. At a crease they
-    /// are those of the surface to its left, at a corner those of the first sector.
+    /// are those of the surface to its left, at a corner those of the first sector. Beside a crease or rim that
+    /// bounds more than 3 quadrilaterals or 5 triangles there is no tangent plane; these are the directions
+    /// along it and of the first wave across.
     ///
     /// Errors: [`Error::NoLimit`] unless the scheme is Loop, Catmull–Clark or bilinear;
     /// [`Error::WrongLength`].
@@ -279,6 +282,10 @@ impl RefinementPlan {
     /// The face of the cage that each face of the last level comes from; of faces that stand for an edge or
     /// a vertex one of those there.
     pub fn cage_faces(&self) -> FaceMap<FaceId> {
+        if self.options.scheme == Scheme::Sqrt3 {
+            let faces = faces_of_thirds(self);
+            return faces.iter().map(|&f| FaceId::new(f as usize)).collect::<Vec<_>>().into();
+        }
         parallel::map(self.last().topology.face_count(), |f: FaceId| {
             let mut face = f.index() as u32;
             for step in (0..self.levels()).rev() {

@@ -8,7 +8,7 @@
 //! | data of | become |
 //! |---|---|
 //! | vertices | mixed by the same stencils as positions |
-//! | corners | within each face or chart (see [`FaceVarying`]), so seams stay; left out by √3, which flips edges |
+//! | corners | within each face or chart (see [`FaceVarying`]), so seams stay; left out where triangles lie across seams: by an odd number of steps of √3 |
 //! | edges | those of the two halves; defaults inside faces. Left out by √3 and Doo–Sabin |
 //! | faces | those of the face of the cage |
 
@@ -105,8 +105,7 @@ pub fn subdivide(
     let result = Selection::new(mesh, &plan);
     let mut refined = result.join(&plan, positions)?;
     progress.report(0.8)?;
-    let left_out =
-        carry((mesh, sharpness), options, (&plan, &result), &mut refined, progress.part(0.8, 1.0))?;
+    let left_out = carry(mesh, options, (&plan, &result), &mut refined, progress.part(0.8, 1.0))?;
     if let Some(tangents) = tangents {
         let normals = result.normals(&plan, &tangents, &refined);
         refined.attributes_mut().corner.remove(NORMAL);
@@ -242,7 +241,7 @@ impl Selection {
 
 /// Gives `refined` the data of `mesh`; returns the names of those that are left out.
 fn carry(
-    (mesh, sharpness): (&Mesh, &Sharpness),
+    mesh: &Mesh,
     options: &SubdivisionOptions,
     (plan, result): (&RefinementPlan, &Selection),
     refined: &mut Mesh,
@@ -270,11 +269,10 @@ fn carry(
     }
     let last = plan.last();
     let corners = result.halfedge_corners(&last.topology, refined);
-    if scheme == Scheme::Sqrt3 {
-        left_out.extend(old.corner.names().map(str::to_owned));
-    } else if !old.corner.is_empty() {
+    if !old.corner.is_empty() {
         let rule = options.face_varying;
-        let data = refined_corners(mesh, sharpness, plan, rule, progress.part(0.4, 0.9))?;
+        let (data, without) = refined_corners(mesh, plan, rule, progress.part(0.4, 0.9))?;
+        left_out.extend(without);
         let pick = |h: HalfedgeId| corners[h.index()].map(|c| VertexId::new(c as usize));
         refined.attributes_mut().corner = data.gather(corners.len(), pick);
     }

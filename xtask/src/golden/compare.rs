@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 34] = [
+pub(crate) const QUANTITIES: [(&str, &str); 41] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -50,7 +50,14 @@ pub(crate) const QUANTITIES: [(&str, &str); 34] = [
     ("refined_doo_sabin", "1e-12 · largest coordinate"),
     ("limits_loop", "1e-12 · largest coordinate"),
     ("limits_catmull_clark", "1e-12 · largest coordinate"),
+    ("limits_at_ends", "1e-12 · largest coordinate"),
     ("limit_normals", "1e-12 · condition"),
+    ("face_varying_all", "1e-12 · largest coordinate"),
+    ("face_varying_none", "1e-12 · largest coordinate"),
+    ("face_varying_corners_only", "1e-12 · largest coordinate"),
+    ("face_varying_corners_plus_1", "1e-12 · largest coordinate"),
+    ("face_varying_corners_plus_2", "1e-12 · largest coordinate"),
+    ("face_varying_boundaries", "1e-12 · largest coordinate"),
 ];
 
 /// How one quantity of one input compares.

@@ -3,6 +3,7 @@
 //! Every input is written as a raw mesh, each peer answers in a process of its own, and every number is
 //! compared with its tolerance. docs/book/golden.md names the differences of convention.
 
+mod charts;
 mod compare;
 mod estimates;
 mod facts;

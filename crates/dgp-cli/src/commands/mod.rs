@@ -1,5 +1,6 @@
 //! The commands, one a file.
 
+mod cage;
 mod check;
 mod completions;
 mod compress;
@@ -9,6 +10,7 @@ mod crease;
 mod curvature;
 mod demo;
 mod edit;
+mod evaluate;
 mod geodesic;
 mod heat;
 mod info;
@@ -22,6 +24,7 @@ mod shape;
 mod smooth;
 mod solve;
 mod spectrum;
+mod stencils;
 mod subdivide;
 
 use std::path::Path;
@@ -45,6 +48,10 @@ pub(crate) enum Command {
     Smooth(smooth::Smooth),
     /// Refine a coarse cage into a smooth surface, with creases
     Subdivide(subdivide::Subdivide),
+    /// Points, tangents and normals of a subdivision surface at any parameters
+    Evaluate(evaluate::Evaluate),
+    /// Subdivision as a matrix: written, transposed, applied to poses
+    Stencils(stencils::Stencils),
     /// Flip, split, collapse, add and remove single elements
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two

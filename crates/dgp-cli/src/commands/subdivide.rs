@@ -11,9 +11,9 @@ use dgp::{
         topology::euler_characteristic,
     },
     subdiv::{
-        self, BoundaryRule, ButterflyRule, Counts, Error, FaceVarying, LoopWeights, PhongOptions,
-        RefinementOptions, SHARP, SHARPNESS, Scheme, Sharpness, SubdivisionOptions, Surface,
-        phong_tessellate, refine_to_tolerance,
+        self, AdaptiveOptions, BoundaryRule, ButterflyRule, Counts, Error, FaceVarying,
+        LoopWeights, PhongOptions, RefinementOptions, SHARP, SHARPNESS, Scheme, Sharpness,
+        SubdivisionOptions, Surface, phong_tessellate, refine_to_tolerance,
     },
 };
 use serde_json::{Value, json};
@@ -31,9 +31,10 @@ const ADAPTIVE_LEVELS: usize = 10;
 
 /// Options of `dgp subdivide`.
 ///
-/// Texture coordinates keep their seams; groups, colors and other data travel, except with --adaptive,
-/// `phong` and, for data of corners, `sqrt3`: what is left out is said. What is sharp still after the last
-/// level is written as tags of OBJ, so that the result can be refined further.
+/// Texture coordinates keep their seams; groups, colors and other data travel, but for texture
+/// coordinates with seams after an odd number of levels of `sqrt3`, whose triangles lie across them: what is left out
+/// is said. What is sharp still after the last level is written as tags of OBJ, so that the result can be
+/// refined further.
 #[derive(Debug, Args)]
 pub(crate) struct Subdivide {
     #[command(flatten)]
@@ -82,7 +83,7 @@ struct Refining {
 
 /// How faces are split and where their vertices go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum SchemeName {
+pub(super) enum SchemeName {
     /// Triangles into four; smooth (Loop 1987)
     Loop,
     /// Polygons into quadrilaterals; smooth (Catmull and Clark 1978)
@@ -103,7 +104,7 @@ enum SchemeName {
 
 /// How much neighbors count in Loop's scheme.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum WeightsName {
+pub(super) enum WeightsName {
     /// As Loop has them
     Original,
     /// 3/(8d), 3/16 for three edges (Warren 1995)
@@ -112,13 +113,21 @@ enum WeightsName {
     Simple,
 }
 
-/// How data of corners are refined.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+/// How data of corners are refined; all but `linear` for Loop and Catmull–Clark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum FaceVaryingName {
     /// Within each face
     Linear,
-    /// As positions are, with seams as rims (Loop, Catmull–Clark)
+    /// As positions are, with seams as smooth rims through the corners of charts
     Smooth,
+    /// The same, corners of charts smooth too
+    SmoothCorners,
+    /// As smooth, but vertices stay where more than two charts meet
+    SharpJunctions,
+    /// As sharp-junctions, and where seams end or one of two charts has a corner
+    SharpEnds,
+    /// As positions are, but rims of charts stay straight
+    SharpRims,
 }
 
 /// A refined mesh, and what the report says of it.
@@ -188,7 +197,7 @@ impl Subdivide {
             euler[1],
         );
         let mut report = json!({
-            "scheme": refining.scheme.to_possible_value().map(|value| value.get_name().to_owned()),
+            "scheme": refining.scheme.name(),
             "levels": refining.levels(),
             "cage": elements(&before),
             "refined": elements(&after),
@@ -205,15 +214,11 @@ impl Subdivide {
     }
 }
 
-impl Refining {
-    fn levels(&self) -> usize {
-        self.levels.unwrap_or(if self.adaptive.is_some() { ADAPTIVE_LEVELS } else { 1 })
-    }
-
+impl SchemeName {
     /// The scheme; none for Phong tessellation.
-    fn scheme(&self) -> Option<Scheme> {
-        Some(match self.scheme {
-            SchemeName::Loop => Scheme::Loop(match self.loop_weights {
+    pub(super) fn with(self, loop_weights: WeightsName) -> Option<Scheme> {
+        Some(match self {
+            SchemeName::Loop => Scheme::Loop(match loop_weights {
                 WeightsName::Original => LoopWeights::Original,
                 WeightsName::Warren => LoopWeights::Warren,
                 WeightsName::Simple => LoopWeights::Simple,
@@ -228,14 +233,29 @@ impl Refining {
         })
     }
 
+    /// The name as on the command line.
+    pub(super) fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+impl Refining {
+    fn levels(&self) -> usize {
+        self.levels.unwrap_or(if self.adaptive.is_some() { ADAPTIVE_LEVELS } else { 1 })
+    }
+
+    /// The scheme; none for Phong tessellation.
+    fn scheme(&self) -> Option<Scheme> {
+        self.scheme.with(self.loop_weights)
+    }
+
     /// Refuses options that the scheme has no use for.
     fn check(&self) -> Result<(), Failure> {
         let scheme = self.scheme();
         let has_limit = matches!(scheme, Some(Scheme::Bilinear | Scheme::Butterfly(_)));
         let is_smooth = scheme.is_some_and(Scheme::has_creases);
         let refuse = |what: &str, instead: &str| {
-            let name = self.scheme.to_possible_value();
-            let name = name.map_or_else(String::new, |value| value.get_name().to_owned());
+            let name = self.scheme.name();
             Err(Failure::Usage(format!("--scheme {name} {what}; take {instead}")))
         };
         if self.limit && !(is_smooth || has_limit) {
@@ -262,6 +282,14 @@ impl Refining {
             return self.bend(cage, sharpness, progress);
         };
         let refinement = RefinementOptions { scheme, levels, boundary, memory_limit };
+        let face_varying = match self.face_varying {
+            FaceVaryingName::Linear => FaceVarying::Linear,
+            FaceVaryingName::Smooth => FaceVarying::Smooth,
+            FaceVaryingName::SmoothCorners => FaceVarying::SmoothCorners,
+            FaceVaryingName::SharpJunctions => FaceVarying::SharpJunctions,
+            FaceVaryingName::SharpEnds => FaceVarying::SharpEnds,
+            FaceVaryingName::SharpRims => FaceVarying::SharpRims,
+        };
         if let Some(tolerance) = self.adaptive {
             let diagonal = bounding_box(cage).map_or(0.0, |b| b.diagonal());
             let tolerance = match tolerance {
@@ -269,8 +297,9 @@ impl Refining {
                 Tolerance::OfDiagonal(part) => part * diagonal,
                 Tolerance::Exact => 0.0,
             };
+            let options = AdaptiveOptions { refinement, face_varying };
             let (mesh, report) =
-                refine_to_tolerance(cage, sharpness, &refinement, tolerance, progress)?;
+                refine_to_tolerance(cage, sharpness, &options, tolerance, progress)?;
             let details = json!({
                 "limit": true,
                 "adaptive": {
@@ -280,16 +309,12 @@ impl Refining {
                     "faces_beyond": report.faces_beyond,
                 },
             });
-            return Ok(Refined { mesh, left_out: data(cage), details });
+            return Ok(Refined { mesh, left_out: Vec::new(), details });
         }
         let surface = match (self.limit, scheme) {
             (false, _) => Surface::Refined,
             (true, Scheme::Butterfly(_)) => Surface::Limit,
             (true, _) => Surface::LimitAndNormals,
-        };
-        let face_varying = match self.face_varying {
-            FaceVaryingName::Linear => FaceVarying::Linear,
-            FaceVaryingName::Smooth => FaceVarying::Smooth,
         };
         let options = SubdivisionOptions { refinement, surface, face_varying };
         let (mesh, report) = subdiv::subdivide(cage, sharpness, &options, progress)?;
@@ -331,7 +356,7 @@ impl Refining {
             "predicted_bytes": bytes,
             "phong": {"segments": segments, "alpha": self.alpha, "normals": source},
         });
-        Ok(Refined { mesh, left_out: data(cage), details })
+        Ok(Refined { mesh, left_out: Vec::new(), details })
     }
 }
 
@@ -370,13 +395,6 @@ fn rules_left(mesh: &Mesh, rules: &SubdivisionRules) -> SubdivisionRules {
         boundary: rules.boundary,
         others: Vec::new(),
     }
-}
-
-/// The names of all data.
-fn data(mesh: &Mesh) -> Vec<String> {
-    let all = mesh.attributes();
-    let names = all.vertex.names().chain(all.corner.names()).chain(all.face.names());
-    names.filter(|&name| name != SHARPNESS).map(str::to_owned).collect()
 }
 
 fn counts(mesh: &Mesh) -> Counts {
@@ -418,7 +436,7 @@ fn picture_of(
 }
 
 /// A number of bytes, with K, M, G or T for powers of 1024.
-fn size(text: &str) -> Result<u64, String> {
+pub(super) fn size(text: &str) -> Result<u64, String> {
     let units = [('K', 10), ('M', 20), ('G', 30), ('T', 40)];
     let found = units.iter().find_map(|&(unit, shift)| Some((text.strip_suffix(unit)?, shift)));
     let (digits, shift) = found.unwrap_or((text, 0));

@@ -5,6 +5,7 @@ mod folder;
 mod operators;
 mod spectra;
 mod subdivision;
+mod subdivision_tables;
 mod texts;
 
 use std::fs;

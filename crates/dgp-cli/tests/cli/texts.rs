@@ -2,13 +2,15 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 23] = [
     "info",
     "check",
     "convert",
     "repair",
     "smooth",
     "subdivide",
+    "evaluate",
+    "stencils",
     "edit",
     "geodesic",
     "curvature",

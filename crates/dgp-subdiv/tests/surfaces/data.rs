@@ -16,7 +16,7 @@ fn options(scheme: Scheme, levels: usize) -> SubdivisionOptions {
 const LOOP: Scheme = Scheme::Loop(LoopWeights::Original);
 
 /// A cube with a chart of its own on each face, a color per vertex, a part per face and a name per edge.
-fn decorated(mut mesh: Mesh) -> Mesh {
+pub(crate) fn decorated(mut mesh: Mesh) -> Mesh {
     let mut uv = vec![DVec2::ZERO; mesh.halfedge_count()];
     for f in mesh.faces() {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];

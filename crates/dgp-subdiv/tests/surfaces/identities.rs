@@ -234,40 +234,21 @@ fn limit_kinds() -> [Scheme; 2] {
     [Scheme::Loop(LoopWeights::Original), Scheme::CatmullClark]
 }
 
+/// How fast refinement gets there is in `fans.rs`.
 #[test]
-fn refinement_approaches_the_limit() {
+fn from_each_level_on_the_limit_is_the_same() {
     for scheme in limit_kinds() {
         for mesh in cages(scheme) {
             for sharpness in [Sharpness::new(), some_sharpness(&mesh, scheme)] {
                 let cage = plan_of(&mesh, scheme, 0, &sharpness);
                 let limit = cage.limit(mesh.positions().values()).unwrap();
-                let mut errors = Vec::new();
-                for levels in [5, 6] {
+                for levels in [1, 2, 5] {
                     let plan = plan_of(&mesh, scheme, levels, &sharpness);
                     let refined = plan.refine(mesh.positions().values()).unwrap();
-                    // From any level on the limit is the same.
-                    let again = plan.limit(&refined).unwrap();
-                    for (p, q) in limit.iter().zip(&again) {
-                        assert!(p.distance(*q) < 1e-12, "{scheme:?} {p} {q}");
+                    for (p, q) in limit.iter().zip(&plan.limit(&refined).unwrap()) {
+                        assert!(p.distance(*q) < 1e-12, "{scheme:?} {levels} {p} {q}");
                     }
-                    let distances = limit.iter().zip(&refined).map(|(p, q)| p.distance(*q));
-                    errors.push(distances.fold(0.0, f64::max));
                 }
-                // A level shrinks the way to the limit by the largest eigenvalue below 1, of the matrix that
-                // refines a vertex and its ring, that moves the vertex. Smooth: waves once around have no
-                // part at the middle, which leaves (3/8 + cos(2π/d)/4)² < 25/64 of Loop and 1/4 of
-                // Catmull–Clark at d = 4. Crease and rim: 1/4, of a cubic spline. End of a crease: the wave
-                // along it moves the middle unless the vertex is regular. By the matrices its factor is
-                // 0.398, 0.452, 0.481, 0.514 of Loop at d = 3, 4, 5, 7 and 0.462, 0.526, 0.548, 0.567 of
-                // Catmull–Clark at d = 3, 5, 6, 7; no cage here has more edges at a vertex.
-                let ratio = errors[0] / errors[1].max(1e-300);
-                let slowest = if sharpness.is_smooth() { 0.5 } else { 0.567 };
-                let least = 1.0 / slowest;
-                assert!(mesh.vertices().all(|v| mesh.valence(v) <= 7));
-                assert!(
-                    errors[1] < 1e-14 || (least..17.0).contains(&ratio),
-                    "{scheme:?} {errors:?}"
-                );
             }
         }
     }

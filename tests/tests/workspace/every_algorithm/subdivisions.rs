@@ -5,9 +5,9 @@ use dgp_mesh::{
     measure::{NormalWeight, bounding_box, vertex_normals},
 };
 use dgp_subdiv::{
-    ButterflyRule, FaceVarying, LoopWeights, PhongOptions, RefinementOptions, RefinementPlan,
-    Scheme, Sharpness, SubdivisionOptions, Surface, phong_tessellate, refine_adaptively,
-    refine_to_tolerance, subdivide,
+    AdaptiveOptions, ButterflyRule, FaceVarying, LoopWeights, PhongOptions, RefinementOptions,
+    RefinementPlan, Scheme, Sharpness, SubdivisionOptions, Surface, phong_tessellate,
+    refine_adaptively, refine_to_tolerance, subdivide,
 };
 
 use super::{
@@ -68,6 +68,11 @@ fn schemes() -> Vec<Algorithm> {
     ]
 }
 
+fn adaptive() -> AdaptiveOptions {
+    let refinement = refinement(Scheme::CatmullClark, 2);
+    AdaptiveOptions { refinement, face_varying: FaceVarying::SharpEnds }
+}
+
 fn surfaces() -> Vec<Algorithm> {
     vec![
         mesh("subdivide to the limit, Loop", |m, p| {
@@ -100,14 +105,14 @@ fn surfaces() -> Vec<Algorithm> {
             made(phong_tessellate(m, &normals, &options, p).map(|m| (m, ())))
         }),
         mesh("refine_adaptively", |m, p| {
-            let options = refinement(Scheme::CatmullClark, 2);
+            let options = adaptive();
             let half = bounding_box(m).map_or(0.0, |b| b.center().x);
             let asked = |_: usize, corners: &[DVec3]| corners.iter().any(|p| p.x < half);
             let smooth = Sharpness::new();
             made(refine_adaptively(m, &smooth, &options, asked, p).map(|m| (m, ())))
         }),
         mesh("refine_to_tolerance", |m, p| {
-            let options = refinement(Scheme::CatmullClark, 2);
+            let options = adaptive();
             let tolerance = bounding_box(m).map_or(1.0, |b| 0.01 * b.diagonal());
             made(refine_to_tolerance(m, &Sharpness::new(), &options, tolerance, p))
         }),
