@@ -61,7 +61,7 @@ impl<'a> Butterfly<'a> {
         let halfedges = [2 * e as u32, 2 * e as u32 + 1];
         if self.topology.is_boundary_edge(e) {
             for h in halfedges {
-                stencil.push(self.topology.from[h as usize], 9.0 / 16.0);
+                stencil.push(self.topology.from(h), 9.0 / 16.0);
                 self.push_beyond(h, stencil);
             }
             return;
@@ -83,14 +83,14 @@ impl<'a> Butterfly<'a> {
 
     /// Whether the vertex that `h` leaves is inside and has not six edges.
     fn is_irregular(&self, h: u32, stencil: &mut Stencil) -> bool {
-        let v = self.topology.from[h as usize] as usize;
+        let v = self.topology.from(h) as usize;
         self.topology.spokes(v, &mut stencil.spokes) && stencil.spokes.len() != 6
     }
 
     /// The vertex of the rim before the one that `h`, an edge of the rim, leaves.
     fn push_beyond(&self, h: u32, stencil: &mut Stencil) {
         let mut spokes = std::mem::take(&mut stencil.spokes);
-        self.topology.spokes(self.topology.from[h as usize] as usize, &mut spokes);
+        self.topology.spokes(self.topology.from(h) as usize, &mut spokes);
         let (first, last) = (spokes[0], spokes[spokes.len() - 1]);
         stencil.push(self.topology.to(if first == h { last } else { first }), -1.0 / 16.0);
         stencil.spokes = spokes;
@@ -99,7 +99,7 @@ impl<'a> Butterfly<'a> {
     /// The mask of an irregular vertex, for the edge that `h` is.
     fn push_fan(&self, h: u32, factor: f64, stencil: &mut Stencil) {
         let mut spokes = std::mem::take(&mut stencil.spokes);
-        let v = self.topology.from[h as usize];
+        let v = self.topology.from(h);
         self.topology.spokes(v as usize, &mut spokes);
         let d = spokes.len();
         let start = spokes.iter().position(|&spoke| spoke == h).expect("h leaves the vertex");
@@ -115,7 +115,7 @@ impl<'a> Butterfly<'a> {
     fn push_side(&self, h: u32, stencil: &mut Stencil) {
         let topology = self.topology;
         let corner = topology.corner(h);
-        stencil.push(topology.from[h as usize], 0.5);
+        stencil.push(topology.from(h), 0.5);
         let across = topology.vertex(topology.prev(corner));
         stencil.push(across, 1.0 / 8.0);
         for side in [topology.next(corner), topology.prev(corner)] {

@@ -82,7 +82,7 @@ fn vertex<T: Value>(
 #[inline]
 fn edge<T: Value>(topology: &Topology, kind: Kind, old: &[T], means: &[T], e: u32) -> T {
     let halfedges = [2 * e, 2 * e + 1];
-    let [a, b] = halfedges.map(|h| old[topology.from[h as usize] as usize]);
+    let [a, b] = halfedges.map(|h| old[topology.from(h) as usize]);
     let corners = halfedges.map(|h| topology.corner(h));
     if kind == Kind::Bilinear || corners.contains(&NONE) {
         return (a + b) * 0.5;

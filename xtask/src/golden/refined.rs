@@ -227,7 +227,7 @@ impl Cage {
         let [u, v] = plan.limit_tangents(refined)?;
         let size = ours.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let partner = |i: usize| matching.partner[i].unwrap_or(i);
-        let connectivity = plan.connectivity()?;
+        let connectivity = plan.connectivity();
         let (mut worst, mut turned) = (0.0_f64, 0.0_f64);
         let (mut darts, mut normals) = (0, 0);
         for i in 0..ours.len() {
