@@ -65,7 +65,7 @@ pub struct RefinementPlan {
 pub(crate) struct Level {
     pub(crate) topology: Topology,
     pub(crate) creases: Creases,
-    /// Unless faces are split, the face of the level before that each face comes from.
+    /// Of Doo–Sabin, the face of the level before that each face comes from.
     parents: Vec<u32>,
 }
 
@@ -123,7 +123,7 @@ impl RefinementPlan {
                 Some(_) if level == options.levels => {}
                 Some(split) => plan.levels.push(plan.levels[level - 1].split(split)),
                 None => {
-                    plan.levels.push(plan.next_level()?);
+                    plan.levels.push(plan.next_level());
                     plan.counts[level] = plan.levels[level].topology.counts();
                 }
             }
@@ -133,14 +133,14 @@ impl RefinementPlan {
     }
 
     /// The level after the last, unless faces are split.
-    fn next_level(&self) -> Result<Level, Error> {
+    fn next_level(&self) -> Level {
         let step = self.levels.len() - 1;
         let Level { topology, creases, .. } = &self.levels[step];
         let (topology, parents) = match self.options.scheme {
-            Scheme::Sqrt3 => sqrt3::refined(topology, step)?,
-            _ => doo_sabin::refined(topology)?,
+            Scheme::Sqrt3 => (sqrt3::refined(topology, step), Vec::new()),
+            _ => doo_sabin::refined(topology),
         };
-        Ok(Level { topology, creases: creases.refined(), parents })
+        Level { topology, creases: creases.refined(), parents }
     }
 
     /// What it was made with.
@@ -198,8 +198,16 @@ impl RefinementPlan {
     fn refined_values<T: Value>(&self, step: usize, old: &[T]) -> Vec<T> {
         let Level { topology, creases, .. } = &self.levels[step];
         match Kind::of(self.options.scheme) {
-            Some(kind) if creases.is_empty() => smooth::refined(topology, kind, old),
-            _ => self.with_masks(step, |masks| masks::apply(masks, old)),
+            Some(kind) if creases.is_empty() => {
+                let before = step.checked_sub(1).map(|before| &self.levels[before].topology);
+                smooth::refined(before, topology, kind, old)
+            }
+            None => match self.options.scheme {
+                Scheme::Butterfly(rule) => Butterfly::new(topology, rule).refined(old),
+                Scheme::Sqrt3 => Sqrt3::new(topology, step).refined(old),
+                _ => doo_sabin::refined_values(topology, old),
+            },
+            Some(_) => self.with_masks(step, |masks| masks::apply(masks, old)),
         }
     }
 
@@ -287,7 +295,9 @@ impl RefinementPlan {
     /// How `level` is made of which one, if it is the last and a split.
     fn split_before(&self, level: usize) -> Option<(Split, &Level)> {
         let is_split = level > 0 && level == self.levels.len();
-        split_of(self.options.scheme).filter(|_| is_split).map(|split| (split, self.level(level - 1)))
+        split_of(self.options.scheme)
+            .filter(|_| is_split)
+            .map(|split| (split, self.level(level - 1)))
     }
 
     /// The face of the cage that each face of the last level comes from; of faces that stand for an edge or
@@ -296,10 +306,11 @@ impl RefinementPlan {
         parallel::map(self.counts[self.levels()].faces as usize, |f: FaceId| {
             let mut face = f.index() as u32;
             for step in (0..self.levels()).rev() {
-                face = match (split_of(self.options.scheme), self.levels.get(step + 1)) {
-                    (Some(Split::Triangles), _) => face / 4,
-                    (Some(Split::Polygons), _) => self.levels[step].topology.face(face),
-                    (None, level) => level.map_or(0, |level| level.parents[face as usize]),
+                face = match self.options.scheme {
+                    Scheme::Loop(_) | Scheme::Butterfly(_) => face / 4,
+                    Scheme::DooSabin => self.levels[step + 1].parents[face as usize],
+                    // The face of the corner with its number.
+                    _ => self.levels[step].topology.face(face),
                 };
             }
             FaceId::new(face as usize)

@@ -19,9 +19,7 @@
 //!
 //! - Cost: O(corners), one pass over each array, in parallel; no array is written twice.
 
-use dgp_mesh::{
-    Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel,
-};
+use dgp_mesh::{Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel};
 
 use crate::topology::{NONE, Starts, Topology, face_list};
 
@@ -72,7 +70,8 @@ impl Split {
                 |h| {
                     let leaving = parent.corner(h);
                     let arriving = parent.corner(h ^ 1);
-                    let last = |corner: u32| self.first_corner(parent.next(corner)) + self.sides() - 1;
+                    let last =
+                        |corner: u32| self.first_corner(parent.next(corner)) + self.sides() - 1;
                     [
                         if leaving == NONE { NONE } else { self.first_corner(leaving) },
                         if arriving == NONE { NONE } else { last(arriving) },
@@ -151,13 +150,16 @@ impl Split {
                 [Some(child(c)), Some(other)]
             },
         );
-        let vertex_halfedge = map(self.vertex_count(parent), |v| match self.origin(parent, v as usize) {
-            Origin::Vertex(NONE) => None,
-            Origin::Vertex(first) => Some(id(2 * parent.start(first))),
-            // At a hole, the half that runs along it.
-            Origin::Edge(e) => Some(id(2 * (2 * e + u32::from(parent.corner(2 * e) == NONE)) + 1)),
-            Origin::Face(f) => Some(id(inner(parent, parent.corners(f).start) + 1)),
-        });
+        let vertex_halfedge =
+            map(self.vertex_count(parent), |v| match self.origin(parent, v as usize) {
+                Origin::Vertex(NONE) => None,
+                Origin::Vertex(first) => Some(id(2 * parent.start(first))),
+                // At a hole, the half that runs along it.
+                Origin::Edge(e) => {
+                    Some(id(2 * (2 * e + u32::from(parent.corner(2 * e) == NONE)) + 1))
+                }
+                Origin::Face(f) => Some(id(inner(parent, parent.corners(f).start) + 1)),
+            });
         let face_halfedge = match self {
             Split::Triangles => map(parent.face_count(), |f| {
                 let sides = triangle_sides(parent, f);
@@ -350,7 +352,10 @@ mod tests {
         let paired =
             Connectivity::from_paired_corners(vertices, &children.faces(), halfedges).unwrap();
         for h in mesh.halfedges() {
-            assert_eq!((mesh.prev(h), mesh.to(h), mesh.face(h)), (paired.prev(h), paired.to(h), paired.face(h)));
+            assert_eq!(
+                (mesh.prev(h), mesh.to(h), mesh.face(h)),
+                (paired.prev(h), paired.to(h), paired.face(h))
+            );
         }
         for v in mesh.vertices() {
             assert_eq!(mesh.is_boundary_vertex(v), paired.is_boundary_vertex(v));

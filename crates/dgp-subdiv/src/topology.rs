@@ -8,9 +8,7 @@
 
 use std::collections::HashMap;
 
-use dgp_mesh::{
-    Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel,
-};
+use dgp_mesh::{Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel};
 
 use crate::Counts;
 
@@ -43,6 +41,27 @@ pub(crate) enum Starts {
         /// The face of each corner.
         corner_face: Vec<u32>,
     },
+}
+
+impl Starts {
+    /// Of faces with these numbers of corners.
+    pub(crate) fn of(degrees: impl Iterator<Item = u32>) -> Self {
+        let mut starts = vec![0];
+        let mut end = 0;
+        starts.extend(degrees.map(|degree| {
+            end += degree;
+            end
+        }));
+        let degree = starts.get(1).copied().unwrap_or(3);
+        if starts.windows(2).all(|pair| pair[1] - pair[0] == degree) {
+            return Starts::Every(degree);
+        }
+        let mut corner_face = Vec::with_capacity(end as usize);
+        for (&end, f) in starts[1..].iter().zip(0..) {
+            corner_face.resize(end as usize, f);
+        }
+        Starts::At { starts, corner_face }
+    }
 }
 
 impl Topology {
@@ -175,8 +194,11 @@ impl Topology {
     /// The following corner of the same face.
     #[inline]
     pub(crate) fn next(&self, corner: u32) -> u32 {
-        if let Starts::Every(4) = self.starts {
-            return corner & !3 | (corner + 1) & 3;
+        match self.starts {
+            Starts::Every(4) => return corner & !3 | (corner + 1) & 3,
+            Starts::Every(3) if corner % 3 == 2 => return corner - 2,
+            Starts::Every(3) => return corner + 1,
+            _ => {}
         }
         let corners = self.corners(self.face(corner));
         if corner + 1 == corners.end { corners.start } else { corner + 1 }
@@ -309,6 +331,53 @@ impl Topology {
     }
 }
 
+/// Which corner comes after which and which face it is of, for loops that know the degree of faces.
+pub(crate) trait Corners: Sync {
+    /// The face of a corner.
+    fn face(&self, corner: u32) -> u32;
+    /// The following corner of the same face.
+    fn following(&self, corner: u32) -> u32;
+    /// The preceding corner of the same face.
+    fn preceding(&self, corner: u32) -> u32;
+}
+
+/// Faces of `N` corners each.
+pub(crate) struct Every<const N: u32>;
+
+impl<const N: u32> Corners for Every<N> {
+    #[inline]
+    fn face(&self, corner: u32) -> u32 {
+        corner / N
+    }
+
+    #[inline]
+    fn following(&self, corner: u32) -> u32 {
+        if corner % N == N - 1 { corner - (N - 1) } else { corner + 1 }
+    }
+
+    #[inline]
+    fn preceding(&self, corner: u32) -> u32 {
+        if corner.is_multiple_of(N) { corner + (N - 1) } else { corner - 1 }
+    }
+}
+
+impl Corners for Topology {
+    #[inline]
+    fn face(&self, corner: u32) -> u32 {
+        Topology::face(self, corner)
+    }
+
+    #[inline]
+    fn following(&self, corner: u32) -> u32 {
+        self.next(corner)
+    }
+
+    #[inline]
+    fn preceding(&self, corner: u32) -> u32 {
+        self.prev(corner)
+    }
+}
+
 /// Faces that begin at `starts`, with these vertices at their corners.
 pub(crate) fn face_list(starts: &Starts, corner_vertex: &[u32]) -> FaceList {
     let vertex = |c: VertexId| VertexId::new(corner_vertex[c.index()] as usize);
@@ -357,25 +426,14 @@ fn corners_of<const N: usize>(mesh: &Connectivity, sides: &[[u32; N]]) -> Vec<u3
 fn polygons(mesh: &Connectivity) -> (Starts, Vec<u32>, Vec<u32>) {
     let mut corner_halfedge = Vec::with_capacity(mesh.halfedge_count());
     let mut halfedge_corner = vec![NONE; mesh.halfedge_count()];
-    let mut starts = Vec::with_capacity(mesh.face_count() + 1);
-    starts.push(0);
-    for f in mesh.faces() {
+    let starts = Starts::of(mesh.faces().map(|f| {
+        let first = corner_halfedge.len();
         for h in mesh.face_halfedges(f) {
             halfedge_corner[h.index()] = corner_halfedge.len() as u32;
             corner_halfedge.push(h.index() as u32);
         }
-        starts.push(corner_halfedge.len() as u32);
-    }
-    let degree = starts.get(1).copied().unwrap_or(3);
-    let starts = if starts.windows(2).all(|pair| pair[1] - pair[0] == degree) {
-        Starts::Every(degree)
-    } else {
-        let degrees = starts.windows(2).zip(0..);
-        let corner_face = degrees
-            .flat_map(|(pair, f)| std::iter::repeat_n(f, (pair[1] - pair[0]) as usize))
-            .collect();
-        Starts::At { starts, corner_face }
-    };
+        (corner_halfedge.len() - first) as u32
+    }));
     (starts, corner_halfedge, halfedge_corner)
 }
 
