@@ -21,7 +21,7 @@
 
 use dgp_mesh::{Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel};
 
-use crate::topology::{NONE, Starts, Topology, face_list};
+use crate::topology::{Corners, Every, NONE, Starts, Topology};
 
 /// How faces split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,206 +43,41 @@ pub(crate) fn split_triangles(parent: &Topology) -> Topology {
     Split::Triangles.children(parent)
 }
 
+/// Calls a method of [`Parent`] with the degree of its faces known.
+macro_rules! by_degree {
+    ($split:expr, $parent:expr, $method:ident) => {
+        match (&$parent.starts, $split) {
+            (_, Split::Triangles) => Parent::new($parent, $split, &Every::<3>).$method(),
+            (Starts::Every(4), _) => Parent::new($parent, $split, &Every::<4>).$method(),
+            _ => Parent::new($parent, $split, $parent).$method(),
+        }
+    };
+}
+
 impl Split {
     /// The connectivity of the next level.
     pub(crate) fn children(self, parent: &Topology) -> Topology {
-        let first = |v: VertexId| match self.origin(parent, v.index()) {
-            Origin::Vertex(NONE) => NONE,
-            Origin::Vertex(first) => 2 * first,
-            // Beside a hole the first one has it on its right: it runs against the half-edge of the hole.
-            Origin::Edge(e) => 2 * (2 * e + u32::from(parent.corner(2 * e + 1) == NONE)) + 1,
-            Origin::Face(f) => inner(parent, parent.corners(f).start) + 1,
-        };
-        Topology {
-            starts: self.starts(),
-            corner_vertex: self.corner_vertex(parent),
-            corner_halfedge: match self {
-                Split::Triangles => {
-                    let sides = map(parent.face_count(), |f| triangle_sides(parent, f));
-                    sides.into_flattened().into_flattened()
-                }
-                Split::Polygons => {
-                    map(parent.corner_count(), |c| quad_sides(parent, c)).into_flattened()
-                }
-            },
-            halfedge_corner: pairs(
-                parent,
-                |h| {
-                    let leaving = parent.corner(h);
-                    let arriving = parent.corner(h ^ 1);
-                    let last =
-                        |corner: u32| self.first_corner(parent.next(corner)) + self.sides() - 1;
-                    [
-                        if leaving == NONE { NONE } else { self.first_corner(leaving) },
-                        if arriving == NONE { NONE } else { last(arriving) },
-                    ]
-                },
-                |c| match self {
-                    // The triangle in the middle starts its side k at the middle of side k and ends it at
-                    // that of side k + 1, so the edge that cuts off corner c is its side c − 1.
-                    Split::Triangles => {
-                        [self.first_corner(c) + 1, 12 * (c / 3) + 9 + parent.prev(c) % 3]
-                    }
-                    Split::Polygons => [4 * c + 1, 4 * parent.next(c) + 2],
-                },
-            ),
-            vertex_halfedge: map(self.vertex_count(parent), |v| first(VertexId::new(v as usize))),
-        }
+        by_degree!(self, parent, children)
     }
 
     /// The faces of the next level.
     pub(crate) fn faces(self, parent: &Topology) -> FaceList {
-        face_list(&self.starts(), &self.corner_vertex(parent))
+        by_degree!(self, parent, faces)
     }
 
     /// The next level as a mesh, with the numbers that [`children`](Self::children) gives.
     pub(crate) fn connectivity(self, parent: &Topology) -> Connectivity {
-        let (vertices, edges) = (parent.vertex_count() as u32, parent.edge_count() as u32);
-        let id = |h: u32| HalfedgeId::new(h as usize);
-        let vertex = |v: u32| VertexId::new(v as usize);
-        let middle = |c: u32| vertex(vertices + parent.edge(c));
-        let prev = pairs(
-            parent,
-            |h| {
-                let leaving = match parent.corner(h) {
-                    // After the half-edge of the hole that arrives where this one leaves.
-                    NONE => 2 * parent.vertex_halfedge[parent.from(h) as usize] + 1,
-                    corner => last_side(parent, corner),
-                };
-                let arriving = match parent.corner(h ^ 1) {
-                    NONE => 2 * (h ^ 1),
-                    corner => match self {
-                        Split::Triangles => inner(parent, parent.next(corner)),
-                        Split::Polygons => inner(parent, corner) + 1,
-                    },
-                };
-                [id(leaving), id(arriving)]
-            },
-            |c| {
-                let second = match self {
-                    Split::Triangles => inner(parent, parent.prev(c)) + 1,
-                    Split::Polygons => inner(parent, parent.next(c)),
-                };
-                [id(2 * parent.corner_halfedge[c as usize]), id(second)]
-            },
-        );
-        let to = pairs(
-            parent,
-            |h| [vertex(vertices + h / 2), vertex(parent.from(h))],
-            |c| match self {
-                Split::Triangles => [middle(parent.prev(c)), middle(c)],
-                Split::Polygons => [vertex(vertices + edges + parent.face(c)), middle(c)],
-            },
-        );
-        let child = |c: u32| FaceId::new(self.child(c) as usize);
-        let face = pairs(
-            parent,
-            |h| {
-                let at = |corner: u32| (corner != NONE).then_some(corner);
-                let leaving = at(parent.corner(h)).map(child);
-                [leaving, at(parent.corner(h ^ 1)).map(|corner| child(parent.next(corner)))]
-            },
-            |c| {
-                let other = match self {
-                    Split::Triangles => FaceId::new(4 * (c as usize / 3) + 3),
-                    Split::Polygons => child(parent.next(c)),
-                };
-                [Some(child(c)), Some(other)]
-            },
-        );
-        let vertex_halfedge =
-            map(self.vertex_count(parent), |v| match self.origin(parent, v as usize) {
-                Origin::Vertex(NONE) => None,
-                Origin::Vertex(first) => Some(id(2 * parent.start(first))),
-                // At a hole, the half that runs along it.
-                Origin::Edge(e) => {
-                    Some(id(2 * (2 * e + u32::from(parent.corner(2 * e) == NONE)) + 1))
-                }
-                Origin::Face(f) => Some(id(inner(parent, parent.corners(f).start) + 1)),
-            });
-        let face_halfedge = match self {
-            Split::Triangles => map(parent.face_count(), |f| {
-                let sides = triangle_sides(parent, f);
-                sides.map(|[first, ..]| id(first))
-            })
-            .into_flattened(),
-            Split::Polygons => {
-                map(parent.corner_count(), |c| id(2 * parent.corner_halfedge[c as usize]))
-            }
-        };
-        Connectivity::from_arrays(HalfedgeArrays {
-            prev: prev.into(),
-            to: to.into(),
-            face: face.into(),
-            vertex_halfedge: vertex_halfedge.into(),
-            face_halfedge: face_halfedge.into(),
-        })
+        by_degree!(self, parent, connectivity)
     }
+}
 
-    fn starts(self) -> Starts {
-        Starts::Every(self.sides())
-    }
-
-    /// The corners of a child.
-    fn sides(self) -> u32 {
-        match self {
-            Split::Triangles => 3,
-            Split::Polygons => 4,
-        }
-    }
-
-    fn vertex_count(self, parent: &Topology) -> usize {
-        let points = parent.vertex_count() + parent.edge_count();
-        points + if self == Split::Polygons { parent.face_count() } else { 0 }
-    }
-
-    /// The child at a corner.
-    #[inline]
-    fn child(self, corner: u32) -> u32 {
-        match self {
-            Split::Triangles => 4 * (corner / 3) + corner % 3,
-            Split::Polygons => corner,
-        }
-    }
-
-    /// The first corner of the child at a corner.
-    #[inline]
-    fn first_corner(self, corner: u32) -> u32 {
-        self.sides() * self.child(corner)
-    }
-
-    /// What a vertex of the next level comes from.
-    #[inline]
-    fn origin(self, parent: &Topology, v: usize) -> Origin {
-        let (vertices, edges) = (parent.vertex_count(), parent.edge_count());
-        if v < vertices {
-            Origin::Vertex(parent.vertex_halfedge[v])
-        } else if v < vertices + edges {
-            Origin::Edge((v - vertices) as u32)
-        } else {
-            Origin::Face((v - vertices - edges) as u32)
-        }
-    }
-
-    /// The vertices at the corners of the next level.
-    fn corner_vertex(self, parent: &Topology) -> Vec<u32> {
-        let (vertices, edges) = (parent.vertex_count() as u32, parent.edge_count() as u32);
-        let middle = |c: u32| vertices + parent.edge(c);
-        match self {
-            Split::Triangles => map(parent.face_count(), |f| {
-                let corners = [3 * f, 3 * f + 1, 3 * f + 2];
-                let [a, b, c] = corners.map(|c| parent.vertex(c));
-                let [i, j, k] = corners.map(middle);
-                [a, i, k, b, j, i, c, k, j, i, j, k]
-            })
-            .into_flattened(),
-            Split::Polygons => map(parent.corner_count(), |c| {
-                let center = vertices + edges + parent.face(c);
-                [parent.vertex(c), middle(c), center, middle(parent.prev(c))]
-            })
-            .into_flattened(),
-        }
-    }
+/// What is split.
+struct Parent<'a, C> {
+    topology: &'a Topology,
+    split: Split,
+    corners: &'a C,
+    vertices: u32,
+    edges: u32,
 }
 
 /// What a vertex comes from.
@@ -253,58 +88,290 @@ enum Origin {
     Face(u32),
 }
 
-/// The first half-edge of the inner edge of a corner.
-#[inline]
-fn inner(parent: &Topology, corner: u32) -> u32 {
-    2 * (2 * parent.edge_count() as u32 + corner)
+impl<'a, C: Corners> Parent<'a, C> {
+    fn new(topology: &'a Topology, split: Split, corners: &'a C) -> Self {
+        let (vertices, edges) = (topology.vertex_count() as u32, topology.edge_count() as u32);
+        Parent { topology, split, corners, vertices, edges }
+    }
+
+    fn children(&self) -> Topology {
+        let first = |v: u32| match self.origin(v) {
+            Origin::Vertex(NONE) => NONE,
+            Origin::Vertex(first) => 2 * first,
+            // Beside a hole the first one has it on its right: it runs against the half-edge of the hole.
+            Origin::Edge(e) => 2 * (2 * e + u32::from(self.topology.corner(2 * e + 1) == NONE)) + 1,
+            Origin::Face(f) => self.inner(self.topology.corners(f).start) + 1,
+        };
+        let halfedge_corner = self.pairs(
+            |h| {
+                let last =
+                    |c: u32| self.first_corner(self.corners.following(c)) + self.split.sides() - 1;
+                [
+                    self.beside(h).map_or(NONE, |c| self.first_corner(c)),
+                    self.beside(h ^ 1).map_or(NONE, last),
+                ]
+            },
+            |c| match self.split {
+                // The triangle in the middle starts its side k at the middle of side k and ends it at
+                // that of side k + 1, so the edge that cuts off corner c is its side c − 1.
+                Split::Triangles => {
+                    [self.first_corner(c) + 1, 12 * (c / 3) + 9 + self.corners.preceding(c) % 3]
+                }
+                Split::Polygons => [4 * c + 1, 4 * self.corners.following(c) + 2],
+            },
+        );
+        let sides = match self.split {
+            Split::Triangles => map(self.topology.face_count(), |f| self.triangle_sides(f))
+                .into_flattened()
+                .into_flattened(),
+            Split::Polygons => {
+                map(self.topology.corner_count(), |c| self.quad_sides(c)).into_flattened()
+            }
+        };
+        Topology {
+            starts: Starts::Every(self.split.sides()),
+            corner_vertex: self.corner_vertices(|v| v),
+            corner_halfedge: sides,
+            halfedge_corner,
+            vertex_halfedge: map(self.vertex_count(), first),
+        }
+    }
+
+    fn faces(&self) -> FaceList {
+        let vertices = self.corner_vertices(|v| VertexId::new(v as usize));
+        FaceList::from_corners(vertices, self.split.sides() as usize)
+    }
+
+    fn connectivity(&self) -> Connectivity {
+        let prev = self.pairs(
+            |h| {
+                let leaving = match self.beside(h) {
+                    // After the half-edge of the hole that arrives where this one leaves.
+                    None => 2 * self.topology.vertex_halfedge[self.from(h) as usize] + 1,
+                    Some(c) => self.last_side(c),
+                };
+                let arriving = match (self.beside(h ^ 1), self.split) {
+                    (None, _) => 2 * (h ^ 1),
+                    (Some(c), Split::Triangles) => self.inner(self.corners.following(c)),
+                    (Some(c), Split::Polygons) => self.inner(c) + 1,
+                };
+                [halfedge(leaving), halfedge(arriving)]
+            },
+            |c| {
+                let second = match self.split {
+                    Split::Triangles => self.inner(self.corners.preceding(c)) + 1,
+                    Split::Polygons => self.inner(self.corners.following(c)),
+                };
+                [halfedge(2 * self.topology.corner_halfedge[c as usize]), halfedge(second)]
+            },
+        );
+        let to = self.pairs(
+            |h| [vertex(self.vertices + h / 2), vertex(self.from(h))],
+            |c| {
+                let first = match self.split {
+                    Split::Triangles => self.middle(self.corners.preceding(c)),
+                    Split::Polygons => self.vertices + self.edges + self.corners.face(c),
+                };
+                [vertex(first), vertex(self.middle(c))]
+            },
+        );
+        let child = |c: u32| FaceId::new(self.child(c) as usize);
+        let face = self.pairs(
+            |h| {
+                let after = |c: u32| child(self.corners.following(c));
+                [self.beside(h).map(child), self.beside(h ^ 1).map(after)]
+            },
+            |c| {
+                let other = match self.split {
+                    Split::Triangles => FaceId::new(4 * (c as usize / 3) + 3),
+                    Split::Polygons => child(self.corners.following(c)),
+                };
+                [Some(child(c)), Some(other)]
+            },
+        );
+        let start = |v: u32| match self.origin(v) {
+            Origin::Vertex(NONE) => None,
+            Origin::Vertex(first) => Some(halfedge(2 * self.topology.start(first))),
+            // At a hole, the half that runs along it.
+            Origin::Edge(e) => {
+                let has_face = self.beside(2 * e).is_some();
+                Some(halfedge(2 * (2 * e + u32::from(!has_face)) + 1))
+            }
+            Origin::Face(f) => Some(halfedge(self.inner(self.topology.corners(f).start) + 1)),
+        };
+        let face_halfedge = match self.split {
+            Split::Triangles => map(self.topology.face_count(), |f| {
+                let [[a, ..], [b, ..], [c, ..], [d, ..]] = self.triangle_sides(f);
+                [halfedge(a), halfedge(b), halfedge(c), halfedge(d)]
+            })
+            .into_flattened(),
+            Split::Polygons => {
+                let first = |c: u32| halfedge(2 * self.topology.corner_halfedge[c as usize]);
+                map(self.topology.corner_count(), first)
+            }
+        };
+        Connectivity::from_arrays(HalfedgeArrays {
+            prev: prev.into(),
+            to: to.into(),
+            face: face.into(),
+            vertex_halfedge: map(self.vertex_count(), start).into(),
+            face_halfedge: face_halfedge.into(),
+        })
+    }
+
+    fn vertex_count(&self) -> usize {
+        let points = (self.vertices + self.edges) as usize;
+        points + if self.split == Split::Polygons { self.topology.face_count() } else { 0 }
+    }
+
+    /// What a vertex of the next level comes from.
+    #[inline]
+    fn origin(&self, v: u32) -> Origin {
+        if v < self.vertices {
+            Origin::Vertex(self.topology.vertex_halfedge[v as usize])
+        } else if v < self.vertices + self.edges {
+            Origin::Edge(v - self.vertices)
+        } else {
+            Origin::Face(v - self.vertices - self.edges)
+        }
+    }
+
+    /// The corner a half-edge starts at, `None` at a hole.
+    #[inline]
+    fn beside(&self, h: u32) -> Option<u32> {
+        Some(self.topology.corner(h)).filter(|&corner| corner != NONE)
+    }
+
+    /// The vertex a half-edge leaves.
+    #[inline]
+    fn from(&self, h: u32) -> u32 {
+        let corner = self.beside(h);
+        let corner = corner.unwrap_or_else(|| self.corners.following(self.topology.corner(h ^ 1)));
+        self.topology.vertex(corner)
+    }
+
+    /// The middle of the side that starts at a corner.
+    #[inline]
+    fn middle(&self, corner: u32) -> u32 {
+        self.vertices + self.topology.edge(corner)
+    }
+
+    /// The child at a corner.
+    #[inline]
+    fn child(&self, corner: u32) -> u32 {
+        match self.split {
+            Split::Triangles => 4 * (corner / 3) + corner % 3,
+            Split::Polygons => corner,
+        }
+    }
+
+    /// The first corner of the child at a corner.
+    #[inline]
+    fn first_corner(&self, corner: u32) -> u32 {
+        self.split.sides() * self.child(corner)
+    }
+
+    /// The vertices at the corners of the next level.
+    fn corner_vertices<T: Send>(&self, id: impl Fn(u32) -> T + Sync + Send) -> Vec<T> {
+        let topology = self.topology;
+        match self.split {
+            Split::Triangles => map(topology.face_count(), |f| {
+                let first = 3 * f as usize;
+                let old = &topology.corner_vertex[first..first + 3];
+                let sides = &topology.corner_halfedge[first..first + 3];
+                let (a, b, c) = (old[0], old[1], old[2]);
+                let middle = |k: usize| self.vertices + (sides[k] >> 1);
+                let (i, j, k) = (middle(0), middle(1), middle(2));
+                let ids = [id(a), id(i), id(k), id(b), id(j), id(i)];
+                [ids, [id(c), id(k), id(j), id(i), id(j), id(k)]]
+            })
+            .into_flattened()
+            .into_flattened(),
+            Split::Polygons => map(topology.corner_count(), |c| {
+                let center = self.vertices + self.edges + self.corners.face(c);
+                let before = self.middle(self.corners.preceding(c));
+                [id(topology.vertex(c)), id(self.middle(c)), id(center), id(before)]
+            })
+            .into_flattened(),
+        }
+    }
+
+    /// The first half-edge of the inner edge of a corner.
+    #[inline]
+    fn inner(&self, corner: u32) -> u32 {
+        2 * (2 * self.edges + corner)
+    }
+
+    /// The last side of the child at a corner: the half of the side before that arrives at it.
+    #[inline]
+    fn last_side(&self, corner: u32) -> u32 {
+        let before = self.corners.preceding(corner);
+        2 * (self.topology.corner_halfedge[before as usize] ^ 1) + 1
+    }
+
+    /// The half-edges of the four children of a triangle.
+    #[inline]
+    fn triangle_sides(&self, f: u32) -> [[u32; 3]; 4] {
+        let first = 3 * f as usize;
+        let sides = &self.topology.corner_halfedge[first..first + 3];
+        let (a, b, c) = (sides[0], sides[1], sides[2]);
+        let (i, j, k) = (self.inner(3 * f), self.inner(3 * f + 1), self.inner(3 * f + 2));
+        let arriving = |h: u32| 2 * (h ^ 1) + 1;
+        [
+            [2 * a, i, arriving(c)],
+            [2 * b, j, arriving(a)],
+            [2 * c, k, arriving(b)],
+            [j + 1, k + 1, i + 1],
+        ]
+    }
+
+    /// The half-edges of the child of a polygon at a corner.
+    #[inline]
+    fn quad_sides(&self, c: u32) -> [u32; 4] {
+        [
+            2 * self.topology.corner_halfedge[c as usize],
+            self.inner(c),
+            self.inner(self.corners.preceding(c)) + 1,
+            self.last_side(c),
+        ]
+    }
+
+    /// Values at the half-edges of the next level: `outer` gives those of the half of half-edge h next to the
+    /// vertex it leaves, there and back; `inner` those of the edge of a corner.
+    fn pairs<T: Send>(
+        &self,
+        outer: impl Fn(u32) -> [T; 2] + Sync + Send,
+        inner: impl Fn(u32) -> [T; 2] + Sync + Send,
+    ) -> Vec<T> {
+        let halves = 2 * self.edges;
+        let pair = |i: u32| if i < halves { outer(i) } else { inner(i - halves) };
+        map(halves as usize + self.topology.corner_count(), pair).into_flattened()
+    }
 }
 
-/// The last side of the child at a corner: the half of the side before that arrives at it.
-#[inline]
-fn last_side(parent: &Topology, corner: u32) -> u32 {
-    2 * (parent.corner_halfedge[parent.prev(corner) as usize] ^ 1) + 1
+impl Split {
+    /// The corners of a child.
+    #[inline]
+    fn sides(self) -> u32 {
+        match self {
+            Split::Triangles => 3,
+            Split::Polygons => 4,
+        }
+    }
 }
 
-/// The half-edges of the four children of a triangle.
 #[inline]
-fn triangle_sides(parent: &Topology, f: u32) -> [[u32; 3]; 4] {
-    let corners = [3 * f, 3 * f + 1, 3 * f + 2];
-    let [a, b, c] = corners.map(|c| parent.corner_halfedge[c as usize]);
-    let [i, j, k] = corners.map(|c| inner(parent, c));
-    let arriving = |h: u32| 2 * (h ^ 1) + 1;
-    [
-        [2 * a, i, arriving(c)],
-        [2 * b, j, arriving(a)],
-        [2 * c, k, arriving(b)],
-        [j + 1, k + 1, i + 1],
-    ]
+fn halfedge(h: u32) -> HalfedgeId {
+    HalfedgeId::new(h as usize)
 }
 
-/// The half-edges of the child of a polygon at a corner.
 #[inline]
-fn quad_sides(parent: &Topology, c: u32) -> [u32; 4] {
-    [
-        2 * parent.corner_halfedge[c as usize],
-        inner(parent, c),
-        inner(parent, parent.prev(c)) + 1,
-        last_side(parent, c),
-    ]
+fn vertex(v: u32) -> VertexId {
+    VertexId::new(v as usize)
 }
 
 fn map<T: Send>(count: usize, f: impl Fn(u32) -> T + Sync + Send) -> Vec<T> {
     parallel::map(count, |i: VertexId| f(i.index() as u32)).into_values()
-}
-
-/// Values at the half-edges of the next level: `outer` gives those of the half of half-edge h next to the
-/// vertex it leaves, there and back; `inner` those of the edge of a corner.
-fn pairs<T: Send>(
-    parent: &Topology,
-    outer: impl Fn(u32) -> [T; 2] + Sync + Send,
-    inner: impl Fn(u32) -> [T; 2] + Sync + Send,
-) -> Vec<T> {
-    let halves = 2 * parent.edge_count() as u32;
-    let pair = |i: u32| if i < halves { outer(i) } else { inner(i - halves) };
-    map(halves as usize + parent.corner_count(), pair).into_flattened()
 }
 
 #[cfg(test)]
