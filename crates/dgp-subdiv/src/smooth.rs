@@ -166,10 +166,10 @@ impl<T: Value> Rules<'_, T> {
             }
             match self.sides((row - vertices) as u32) {
                 Err(ends) => ends * 0.5,
-                Ok(sides) => {
-                    let across = sides.map(|c| self.at(topology.vertex(corners.preceding(c))));
-                    let ends = sides.map(|c| self.at(topology.vertex(c)));
-                    self.edge(ends[0] + ends[1], across[0] + across[1])
+                Ok([c, d]) => {
+                    let across = |c: u32| self.at(topology.vertex(corners.preceding(c)));
+                    let ends = self.at(topology.vertex(c)) + self.at(topology.vertex(d));
+                    self.edge(ends, across(c) + across(d))
                 }
             }
         })
@@ -225,9 +225,9 @@ impl<T: Value> Rules<'_, T> {
             }
             match self.sides((row - vertices) as u32) {
                 Err(ends) => ends * 0.5,
-                Ok(sides) => {
-                    let ends = sides.map(|c| self.at(topology.vertex(c)));
-                    self.edge(ends[0] + ends[1], mean(sides[0]) + mean(sides[1]))
+                Ok([c, d]) => {
+                    let ends = self.at(topology.vertex(c)) + self.at(topology.vertex(d));
+                    self.edge(ends, mean(c) + mean(d))
                 }
             }
         })

@@ -465,4 +465,36 @@ mod tests {
             check_mesh(&once, Split::Polygons);
         }
     }
+    #[test]
+    fn children_of_other_schemes_fit_together() {
+        for mesh in [
+            shapes::octahedron(),
+            shapes::grid(3, 2).unwrap(),
+            shapes::annulus(0.5, 1.0, 7, 2).unwrap(),
+            shapes::grid(1, 1).unwrap(),
+        ] {
+            // The second step and the fourth cut rims.
+            let mut level = Topology::new(&mesh);
+            for step in 0..4 {
+                level = crate::sqrt3::refined(&level, step);
+                check(&level);
+                assert_eq!(level.connectivity().validate(), Ok(()));
+            }
+        }
+        for mesh in [
+            shapes::octahedron(),
+            shapes::truncated_icosahedron(),
+            shapes::quad_grid(2, 3).unwrap(),
+            shapes::capped_cylinder(1.0, 2.0, 5, 2).unwrap(),
+        ] {
+            let mut level = Topology::new(&mesh);
+            for _ in 0..3 {
+                let (children, parents) = crate::doo_sabin::refined(&level);
+                check(&children);
+                assert_eq!(children.connectivity().validate(), Ok(()));
+                assert_eq!(parents.len(), children.face_count());
+                level = children;
+            }
+        }
+    }
 }
