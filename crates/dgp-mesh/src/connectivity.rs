@@ -5,7 +5,8 @@
 //! and cannot disagree. Stored are prev, to and face of each half-edge and one half-edge of each vertex and
 //! face: 42 bytes per triangle. What follows a half-edge is found from what precedes it (decision 0006).
 //!
-//! Invariants, which [`Connectivity::from_faces`] establishes and every edit keeps:
+//! Invariants, which [`Connectivity::from_faces`] establishes and every edit keeps (who calls
+//! [`Connectivity::from_arrays`] vouches for them):
 //!
 //! - each half-edge precedes one other, of the same face or hole;
 //! - `to(h) = from(next(h))`, and `from(h) ≠ to(h)`;
@@ -28,6 +29,23 @@ pub struct Connectivity {
     pub(crate) face: HalfedgeMap<Option<FaceId>>,
     pub(crate) vertex_halfedge: VertexMap<Option<HalfedgeId>>,
     pub(crate) face_halfedge: FaceMap<HalfedgeId>,
+}
+
+/// What a [`Connectivity`] stores, for code that works out half-edges by itself.
+///
+/// The half-edges of edge e are 2e and 2e + 1.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct HalfedgeArrays {
+    /// The half-edge before each one, around its face or hole.
+    pub prev: HalfedgeMap<HalfedgeId>,
+    /// The vertex each half-edge leads to.
+    pub to: HalfedgeMap<VertexId>,
+    /// The face left of each half-edge, `None` at holes.
+    pub face: HalfedgeMap<Option<FaceId>>,
+    /// A half-edge that leaves each vertex: at a hole the one without a face, `None` if it is on no face.
+    pub vertex_halfedge: VertexMap<Option<HalfedgeId>>,
+    /// The first side of each face.
+    pub face_halfedge: FaceMap<HalfedgeId>,
 }
 
 /// Why faces do not form an oriented manifold: the first reason found.
@@ -97,6 +115,24 @@ impl Connectivity {
     ) -> Result<Self, Error> {
         faces.validate(vertex_count)?;
         paired(vertex_count, faces, corner_halfedges)
+    }
+
+    /// Takes over half-edges that are known to fit together, such as those of a split that numbers its
+    /// children by arithmetic. Nothing is searched or paired, and in a release build nothing but the lengths
+    /// is checked: code that cannot prove that its arrays are valid calls
+    /// [`from_paired_corners`](Self::from_paired_corners), or [`validate`](Self::validate) afterwards.
+    ///
+    /// # Panics
+    /// If the arrays of half-edges differ in length or that is odd; where debug assertions are on, also if
+    /// an invariant does not hold.
+    pub fn from_arrays(arrays: HalfedgeArrays) -> Self {
+        let HalfedgeArrays { prev, to, face, vertex_halfedge, face_halfedge } = arrays;
+        let count = prev.len();
+        assert!(count.is_multiple_of(2), "two half-edges an edge");
+        assert!(to.len() == count && face.len() == count, "one entry per half-edge");
+        let connectivity = Connectivity { prev, to, face, vertex_halfedge, face_halfedge };
+        debug_assert_eq!(connectivity.validate(), Ok(()), "half-edges that fit together");
+        connectivity
     }
 
     /// The faces as lists of vertices, in order.

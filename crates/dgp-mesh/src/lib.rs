@@ -63,7 +63,7 @@ pub use attribute::{
 };
 pub use build::strict_mesh;
 pub use check::{Defect, DefectKind, DefectReport, Elements, Groups, Severity, defects};
-pub use connectivity::{Connectivity, NotManifold};
+pub use connectivity::{Connectivity, HalfedgeArrays, NotManifold};
 pub use edge_list::EdgeList;
 pub use edit::{Compaction, EditError, Editor, FaceRemoval, Renumbering, reorder};
 pub use error::Error;

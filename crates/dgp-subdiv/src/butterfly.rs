@@ -25,9 +25,12 @@
 
 use std::f64::consts::TAU;
 
+use dgp_mesh::{VertexId, parallel};
+
 use crate::{
-    masks::{Masks, Means, Stencil},
+    masks::{Masks, Means, Stencil, Value},
     options::ButterflyRule,
+    primal::COMMON,
     topology::{NONE, Topology},
 };
 
@@ -49,27 +52,100 @@ pub fn butterfly_weight(valence: usize, j: usize) -> f64 {
 /// The masks of a step: old vertices, then edges.
 pub(crate) struct Butterfly<'a> {
     topology: &'a Topology,
-    rule: ButterflyRule,
+    /// Whether each vertex has a mask of its own: it is inside and has not six edges. Empty if none has.
+    irregular: Vec<bool>,
+    /// The weights of such masks, by number of edges.
+    common: Vec<Vec<f64>>,
 }
 
 impl<'a> Butterfly<'a> {
     pub(crate) fn new(topology: &'a Topology, rule: ButterflyRule) -> Self {
-        Butterfly { topology, rule }
+        let irregular = match rule {
+            ButterflyRule::Original => Vec::new(),
+            ButterflyRule::Modified => {
+                let is_irregular = |v: VertexId| is_irregular(topology, v.index());
+                parallel::map(topology.vertex_count(), is_irregular).into_values()
+            }
+        };
+        let weights = |d: usize| (0..d).map(|j| butterfly_weight(d, j)).collect();
+        Butterfly { topology, irregular, common: (0..COMMON).map(weights).collect() }
+    }
+
+    /// The new values, without rows being written down but at rims.
+    pub(crate) fn refined<T: Value>(&self, old: &[T]) -> Vec<T> {
+        let topology = self.topology;
+        let vertices = topology.vertex_count();
+        let row = |row: VertexId| {
+            if row.index() < vertices {
+                return old[row.index()];
+            }
+            let h = 2 * (row.index() - vertices) as u32;
+            match [h, h ^ 1].map(|h| self.is_irregular(h)) {
+                [true, true] => (self.fan(h, old) + self.fan(h ^ 1, old)) * 0.5,
+                [true, false] => self.fan(h, old),
+                [false, true] => self.fan(h ^ 1, old),
+                [false, false] => self.regular(h, old).unwrap_or_else(|| {
+                    let mut stencil = Stencil::default();
+                    self.edge(h as usize / 2, &mut stencil);
+                    let entries = stencil.entries.iter();
+                    entries.fold(T::default(), |sum, &(v, weight)| sum + old[v as usize] * weight)
+                }),
+            }
+        };
+        parallel::map(vertices + topology.edge_count(), row).into_values()
+    }
+
+    /// The eight-point mask of an edge, unless a rim is too near.
+    #[inline]
+    fn regular<T: Value>(&self, h: u32, old: &[T]) -> Option<T> {
+        let topology = self.topology;
+        let at = |corner: u32| old[topology.vertex(corner) as usize];
+        let [mut ends, mut across, mut wings] = [T::default(); 3];
+        for side in [h, h ^ 1] {
+            let corner = topology.corner(side);
+            if corner == NONE {
+                return None;
+            }
+            let (next, prev) = (topology.next(corner), topology.prev(corner));
+            ends = ends + at(corner);
+            across = across + at(prev);
+            for wing in [next, prev] {
+                let twin = topology.corner(topology.corner_halfedge[wing as usize] ^ 1);
+                if twin == NONE {
+                    return None;
+                }
+                wings = wings + at(topology.prev(twin));
+            }
+        }
+        Some(ends * 0.5 + across * 0.125 + wings * (-1.0 / 16.0))
+    }
+
+    /// The mask of the irregular vertex that `h` leaves, for the edge that `h` is.
+    fn fan<T: Value>(&self, h: u32, old: &[T]) -> T {
+        let topology = self.topology;
+        let step = |spoke: u32| {
+            topology.corner_halfedge[topology.prev(topology.corner(spoke)) as usize] ^ 1
+        };
+        let spokes =
+            || std::iter::successors(Some(h), |&spoke| Some(step(spoke)).filter(|&s| s != h));
+        let d = spokes().count();
+        let common = self.common.get(d);
+        spokes().enumerate().fold(old[topology.from(h) as usize] * 0.75, |sum, (j, spoke)| {
+            let weight = common.map_or_else(|| butterfly_weight(d, j), |weights| weights[j]);
+            sum + old[topology.to(spoke) as usize] * weight
+        })
     }
 
     fn edge(&self, e: usize, stencil: &mut Stencil) {
         let halfedges = [2 * e as u32, 2 * e as u32 + 1];
         if self.topology.is_boundary_edge(e) {
             for h in halfedges {
-                stencil.push(self.topology.from[h as usize], 9.0 / 16.0);
+                stencil.push(self.topology.from(h), 9.0 / 16.0);
                 self.push_beyond(h, stencil);
             }
             return;
         }
-        let irregular = match self.rule {
-            ButterflyRule::Original => [false; 2],
-            ButterflyRule::Modified => halfedges.map(|h| self.is_irregular(h, stencil)),
-        };
+        let irregular = halfedges.map(|h| self.is_irregular(h));
         let count = irregular.iter().filter(|&&irregular| irregular).count();
         if count == 0 {
             for h in halfedges {
@@ -81,16 +157,16 @@ impl<'a> Butterfly<'a> {
         }
     }
 
-    /// Whether the vertex that `h` leaves is inside and has not six edges.
-    fn is_irregular(&self, h: u32, stencil: &mut Stencil) -> bool {
-        let v = self.topology.from[h as usize] as usize;
-        self.topology.spokes(v, &mut stencil.spokes) && stencil.spokes.len() != 6
+    /// Whether the vertex that `h` leaves has a mask of its own.
+    #[inline]
+    fn is_irregular(&self, h: u32) -> bool {
+        self.irregular.get(self.topology.from(h) as usize).copied().unwrap_or(false)
     }
 
     /// The vertex of the rim before the one that `h`, an edge of the rim, leaves.
     fn push_beyond(&self, h: u32, stencil: &mut Stencil) {
         let mut spokes = std::mem::take(&mut stencil.spokes);
-        self.topology.spokes(self.topology.from[h as usize] as usize, &mut spokes);
+        self.topology.spokes(self.topology.from(h) as usize, &mut spokes);
         let (first, last) = (spokes[0], spokes[spokes.len() - 1]);
         stencil.push(self.topology.to(if first == h { last } else { first }), -1.0 / 16.0);
         stencil.spokes = spokes;
@@ -99,7 +175,7 @@ impl<'a> Butterfly<'a> {
     /// The mask of an irregular vertex, for the edge that `h` is.
     fn push_fan(&self, h: u32, factor: f64, stencil: &mut Stencil) {
         let mut spokes = std::mem::take(&mut stencil.spokes);
-        let v = self.topology.from[h as usize];
+        let v = self.topology.from(h);
         self.topology.spokes(v as usize, &mut spokes);
         let d = spokes.len();
         let start = spokes.iter().position(|&spoke| spoke == h).expect("h leaves the vertex");
@@ -115,7 +191,7 @@ impl<'a> Butterfly<'a> {
     fn push_side(&self, h: u32, stencil: &mut Stencil) {
         let topology = self.topology;
         let corner = topology.corner(h);
-        stencil.push(topology.from[h as usize], 0.5);
+        stencil.push(topology.from(h), 0.5);
         let across = topology.vertex(topology.prev(corner));
         stencil.push(across, 1.0 / 8.0);
         for side in [topology.next(corner), topology.prev(corner)] {
@@ -129,6 +205,23 @@ impl<'a> Butterfly<'a> {
             } else {
                 stencil.push(topology.vertex(topology.prev(twin)), -1.0 / 16.0);
             }
+        }
+    }
+}
+
+/// Whether a vertex is inside and has not six edges.
+fn is_irregular(topology: &Topology, v: usize) -> bool {
+    let first = topology.vertex_halfedge[v];
+    let (mut spoke, mut count) = (first, 0);
+    loop {
+        let corner = topology.corner(spoke);
+        if corner == NONE {
+            return false;
+        }
+        count += 1;
+        spoke = topology.corner_halfedge[topology.prev(corner) as usize] ^ 1;
+        if spoke == first {
+            return count != 6;
         }
     }
 }

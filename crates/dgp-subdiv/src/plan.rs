@@ -1,12 +1,18 @@
 //! A plan of refinement: connectivity once, values many times.
 //!
 //! The plan holds the connectivity and the sharpness of each level. Refining values, be they positions of
-//! an animated cage or data, then needs no search and no weights: masks are worked out row by row.
+//! an animated cage or data, then needs no search and no weights: masks are worked out row by row. The last
+//! level, as large as all others by three, is only made when something is asked of it that refining values
+//! and joining faces do not need: these are arithmetic on the level before.
 //!
 //! - Cost: to make, O(corners) of all levels; to refine, O(corners) per level, in parallel.
 //! - Guarantees: the same bits for any number of threads; what would not fit is refused before starting.
 
-use dgp_mesh::{Connectivity, FaceId, FaceList, FaceMap, Progress, VertexId, parallel};
+use std::sync::OnceLock;
+
+use dgp_mesh::{
+    Connectivity, FaceId, FaceList, FaceMap, HalfedgeId, Id, Progress, VertexId, parallel,
+};
 
 use crate::{
     Counts, Error, RefinementOptions, Scheme, Sharpness, StencilTable,
@@ -19,7 +25,7 @@ use crate::{
     primal::{Kind, Primal},
     sharpness::Creases,
     smooth,
-    split::{split_polygons, split_triangles},
+    split::Split,
     sqrt3::{self, Sqrt3},
     stencil::check_length,
     topology::Topology,
@@ -47,8 +53,12 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct RefinementPlan {
     options: RefinementOptions,
-    /// The cage, then each level.
+    /// The cage, then each level; without the last one if that is a split of the one before.
     levels: Vec<Level>,
+    /// The last level of a split, once it is asked for.
+    last: OnceLock<Level>,
+    /// The elements of each level.
+    counts: Vec<Counts>,
     bytes: u64,
 }
 
@@ -56,22 +66,25 @@ pub struct RefinementPlan {
 pub(crate) struct Level {
     pub(crate) topology: Topology,
     pub(crate) creases: Creases,
-    parents: Parents,
+    /// Of Doo–Sabin, the face of the level before that each face comes from.
+    parents: Vec<u32>,
 }
 
-/// Which face of the level before a face comes from.
-#[derive(Clone, Debug)]
-enum Parents {
-    /// The face of the corner with its number.
-    Corner,
-    /// A quarter of its number.
-    Quarter,
-    /// As listed.
-    List(Vec<u32>),
+impl Level {
+    /// The level after this one.
+    fn split(&self, split: Split) -> Level {
+        let creases = self.creases.refined();
+        Level { topology: split.children(&self.topology), creases, parents: Vec::new() }
+    }
 }
 
-fn listed((topology, parents): (Topology, Vec<u32>)) -> (Topology, Parents) {
-    (topology, Parents::List(parents))
+/// How the scheme splits faces, if it does.
+fn split_of(scheme: Scheme) -> Option<Split> {
+    match scheme {
+        Scheme::Loop(_) | Scheme::Butterfly(_) => Some(Split::Triangles),
+        Scheme::CatmullClark | Scheme::Bilinear => Some(Split::Polygons),
+        Scheme::Sqrt3 | Scheme::DooSabin => None,
+    }
 }
 
 impl RefinementPlan {
@@ -88,13 +101,7 @@ impl RefinementPlan {
         progress: Progress<'_>,
     ) -> Result<Self, Error> {
         progress.report(0.0)?;
-        let counts = Counts {
-            vertices: cage.vertex_count() as u64,
-            edges: cage.edge_count() as u64,
-            corners: cage.halfedges().filter(|&h| !cage.is_boundary_halfedge(h)).count() as u64,
-            faces: cage.face_count() as u64,
-        };
-        let (predicted, bytes) = options.predict(counts)?;
+        let (predicted, bytes) = options.predict(counts(cage))?;
         check_sharpness(cage, sharpness, options.scheme)?;
         check_cage(cage, options.scheme)?;
         let topology = Topology::new(cage);
@@ -104,31 +111,37 @@ impl RefinementPlan {
         }
         let mut plan = RefinementPlan {
             options: *options,
-            levels: vec![Level { topology, creases, parents: Parents::List(Vec::new()) }],
+            levels: vec![Level { topology, creases, parents: Vec::new() }],
+            last: OnceLock::new(),
+            counts: predicted,
             bytes,
         };
-        let total: u64 = predicted[1..].iter().map(|counts| counts.corners).sum();
+        let total: u64 = plan.counts[1..].iter().map(|counts| counts.corners).sum();
         let mut done = 0;
-        for counts in &predicted[1..] {
-            let next = plan.next_level()?;
-            plan.levels.push(next);
-            done += counts.corners;
+        for level in 1..=options.levels {
+            done += plan.counts[level].corners;
+            match split_of(options.scheme) {
+                Some(_) if level == options.levels => {}
+                Some(split) => plan.levels.push(plan.levels[level - 1].split(split)),
+                None => {
+                    plan.levels.push(plan.next_level());
+                    plan.counts[level] = plan.levels[level].topology.counts();
+                }
+            }
             progress.report(done as f64 / total.max(1) as f64)?;
         }
         Ok(plan)
     }
 
-    /// The level after the last.
-    fn next_level(&self) -> Result<Level, Error> {
+    /// The level after the last, unless faces are split.
+    fn next_level(&self) -> Level {
         let step = self.levels.len() - 1;
         let Level { topology, creases, .. } = &self.levels[step];
         let (topology, parents) = match self.options.scheme {
-            Scheme::Loop(_) | Scheme::Butterfly(_) => (split_triangles(topology), Parents::Quarter),
-            Scheme::CatmullClark | Scheme::Bilinear => (split_polygons(topology), Parents::Corner),
-            Scheme::Sqrt3 => sqrt3::refined(topology, step).map(listed)?,
-            Scheme::DooSabin => doo_sabin::refined(topology).map(listed)?,
+            Scheme::Sqrt3 => (sqrt3::refined(topology, step), Vec::new()),
+            _ => doo_sabin::refined(topology),
         };
-        Ok(Level { topology, creases: creases.refined(), parents })
+        Level { topology, creases: creases.refined(), parents }
     }
 
     /// What it was made with.
@@ -138,7 +151,7 @@ impl RefinementPlan {
 
     /// How often the cage is refined.
     pub fn levels(&self) -> usize {
-        self.levels.len() - 1
+        self.options.levels
     }
 
     /// The bytes predicted for the plan and the refined mesh.
@@ -151,20 +164,14 @@ impl RefinementPlan {
     /// # Panics
     /// If there is no such level.
     pub fn counts(&self, level: usize) -> Counts {
-        let topology = &self.levels[level].topology;
-        Counts {
-            vertices: topology.vertex_count() as u64,
-            edges: topology.edge_count() as u64,
-            corners: topology.corner_count() as u64,
-            faces: topology.face_count() as u64,
-        }
+        self.counts[level]
     }
 
     /// The values at the vertices of the last level, given those at the vertices of the cage.
     ///
     /// Error: [`Error::WrongLength`].
     pub fn refine<T: Value>(&self, values: &[T]) -> Result<Vec<T>, Error> {
-        check_length("vertex of the cage", values.len(), self.levels[0].topology.vertex_count())?;
+        check_length("vertex of the cage", values.len(), self.vertices(0))?;
         let mut current = None;
         for step in 0..self.levels() {
             let old = current.as_deref().unwrap_or(values);
@@ -181,19 +188,27 @@ impl RefinementPlan {
     /// If there is no such level.
     pub fn refine_step<T: Value>(&self, step: usize, values: &[T]) -> Result<Vec<T>, Error> {
         assert!(step < self.levels(), "a plan of {} levels", self.levels());
-        check_length(
-            "vertex of the level",
-            values.len(),
-            self.levels[step].topology.vertex_count(),
-        )?;
+        check_length("vertex of the level", values.len(), self.vertices(step))?;
         Ok(self.refined_values(step, values))
+    }
+
+    fn vertices(&self, level: usize) -> usize {
+        self.counts[level].vertices as usize
     }
 
     fn refined_values<T: Value>(&self, step: usize, old: &[T]) -> Vec<T> {
         let Level { topology, creases, .. } = &self.levels[step];
         match Kind::of(self.options.scheme) {
-            Some(kind) if creases.is_empty() => smooth::refined(topology, kind, old),
-            _ => self.with_masks(step, |masks| masks::apply(masks, old)),
+            Some(kind) if creases.is_empty() => {
+                let before = step.checked_sub(1).map(|before| &self.levels[before].topology);
+                smooth::refined(before, topology, kind, old)
+            }
+            None => match self.options.scheme {
+                Scheme::Butterfly(rule) => Butterfly::new(topology, rule).refined(old),
+                Scheme::Sqrt3 => Sqrt3::new(topology, step).refined(old),
+                _ => doo_sabin::refined_values(topology, old),
+            },
+            Some(_) => self.with_masks(step, |masks| masks::apply(masks, old)),
         }
     }
 
@@ -218,7 +233,7 @@ impl RefinementPlan {
         }
         match all {
             Some(all) => Ok(all),
-            None => Ok(StencilTable::identity(self.levels[0].topology.vertex_count())),
+            None => Ok(StencilTable::identity(self.vertices(0))),
         }
     }
 
@@ -227,8 +242,7 @@ impl RefinementPlan {
     /// Errors: [`Error::NoLimit`] unless the scheme is Loop, Catmull–Clark, bilinear or interpolates;
     /// [`Error::WrongLength`].
     pub fn limit<T: Value>(&self, values: &[T]) -> Result<Vec<T>, Error> {
-        let vertices = self.last().topology.vertex_count();
-        check_length("vertex of the last level", values.len(), vertices)?;
+        check_length("vertex of the last level", values.len(), self.vertices(self.levels()))?;
         if let Scheme::Butterfly(_) = self.options.scheme {
             return Ok(values.to_vec());
         }
@@ -244,8 +258,7 @@ impl RefinementPlan {
     /// Errors: [`Error::NoLimit`] unless the scheme is Loop, Catmull–Clark or bilinear;
     /// [`Error::WrongLength`].
     pub fn limit_tangents<T: Value>(&self, values: &[T]) -> Result<[Vec<T>; 2], Error> {
-        let vertices = self.last().topology.vertex_count();
-        check_length("vertex of the last level", values.len(), vertices)?;
+        check_length("vertex of the last level", values.len(), self.vertices(self.levels()))?;
         let first = masks::apply(&self.limit_masks(Limit::Tangent(0))?, values);
         let second = masks::apply(&self.limit_masks(Limit::Tangent(1))?, values);
         Ok([first, second])
@@ -276,7 +289,18 @@ impl RefinementPlan {
     /// # Panics
     /// If there is no such level.
     pub fn faces(&self, level: usize) -> FaceList {
-        self.levels[level].topology.faces()
+        match self.split_before(level) {
+            Some((split, parent)) => split.faces(&parent.topology),
+            None => self.levels[level].topology.faces(),
+        }
+    }
+
+    /// How `level` is made of which one, if it is the last and a split.
+    fn split_before(&self, level: usize) -> Option<(Split, &Level)> {
+        let is_split = level > 0 && level == self.levels.len();
+        split_of(self.options.scheme)
+            .filter(|_| is_split)
+            .map(|split| (split, self.level(level - 1)))
     }
 
     /// The face of the cage that each face of the last level comes from; of faces that stand for an edge or
@@ -286,13 +310,14 @@ impl RefinementPlan {
             let faces = faces_of_thirds(self);
             return faces.iter().map(|&f| FaceId::new(f as usize)).collect::<Vec<_>>().into();
         }
-        parallel::map(self.last().topology.face_count(), |f: FaceId| {
+        parallel::map(self.counts[self.levels()].faces as usize, |f: FaceId| {
             let mut face = f.index() as u32;
             for step in (0..self.levels()).rev() {
-                face = match &self.levels[step + 1].parents {
-                    Parents::Corner => self.levels[step].topology.face(face),
-                    Parents::Quarter => face / 4,
-                    Parents::List(parents) => parents[face as usize],
+                face = match self.options.scheme {
+                    Scheme::Loop(_) | Scheme::Butterfly(_) => face / 4,
+                    Scheme::DooSabin => self.levels[step + 1].parents[face as usize],
+                    // The face of the corner with its number.
+                    _ => self.levels[step].topology.face(face),
                 };
             }
             FaceId::new(face as usize)
@@ -300,18 +325,22 @@ impl RefinementPlan {
     }
 
     /// The connectivity of the last level. Edges have the numbers they have in the plan, which knows them.
-    pub fn connectivity(&self) -> Result<Connectivity, Error> {
-        let topology = &self.last().topology;
-        let (vertices, halfedges) = (topology.vertex_count(), &topology.corner_halfedge);
-        Ok(Connectivity::from_paired_corners(vertices, &topology.faces(), halfedges)?)
+    pub fn connectivity(&self) -> Connectivity {
+        match self.split_before(self.levels()) {
+            Some((split, parent)) => split.connectivity(&parent.topology),
+            None => self.last().topology.connectivity(),
+        }
     }
 
     pub(crate) fn last(&self) -> &Level {
-        &self.levels[self.levels()]
+        self.level(self.levels())
     }
 
     pub(crate) fn level(&self, level: usize) -> &Level {
-        &self.levels[level]
+        match self.split_before(level) {
+            Some((split, parent)) => self.last.get_or_init(|| parent.split(split)),
+            None => &self.levels[level],
+        }
     }
 
     /// Calls `f` with the masks that lead from level `step` to the next.
@@ -325,6 +354,17 @@ impl RefinementPlan {
             Scheme::Sqrt3 => f(&Sqrt3::new(topology, step)),
             Scheme::DooSabin => f(&DooSabin::new(topology)),
         }
+    }
+}
+
+/// The elements of a mesh.
+pub(crate) fn counts(mesh: &Connectivity) -> Counts {
+    let has_face = |h: HalfedgeId| u64::from(!mesh.is_boundary_halfedge(h));
+    Counts {
+        vertices: mesh.vertex_count() as u64,
+        edges: mesh.edge_count() as u64,
+        corners: parallel::reduce(mesh.halfedge_count(), 0, has_face, |a, b| a + b),
+        faces: mesh.face_count() as u64,
     }
 }
 
@@ -350,22 +390,33 @@ fn check_sharpness(
 
 /// Refuses vertices and faces that the scheme cannot split.
 fn check_cage(cage: &Connectivity, scheme: Scheme) -> Result<(), Error> {
-    if let Some(vertex) = cage.vertices().find(|&v| cage.is_isolated_vertex(v)) {
+    if let Some(vertex) = first(cage.vertex_count(), |v| cage.is_isolated_vertex(v)) {
         return Err(Error::IsolatedVertex { vertex });
     }
     if scheme.needs_triangles()
-        && let Some(face) = cage.faces().find(|&f: &FaceId| cage.triangle(f).is_none())
+        && let Some(face) = first(cage.face_count(), |f: FaceId| cage.triangle(f).is_none())
     {
         let (scheme, degree) = (scheme.name(), cage.degree(face));
         return Err(Error::NotTriangle { scheme, face, degree });
     }
     if scheme.needs_triangles() || scheme == Scheme::DooSabin {
-        let is_bad = |&v: &VertexId| !cage.is_boundary_vertex(v) && cage.valence(v) == 2;
-        if let Some(vertex) = cage.vertices().find(is_bad) {
+        let is_bad = |v: VertexId| match cage.vertex_halfedge(v) {
+            Some(h) if !cage.is_boundary_halfedge(h) => cage.ccw(cage.ccw(h)) == h,
+            _ => false,
+        };
+        if let Some(vertex) = first(cage.vertex_count(), is_bad) {
             return Err(Error::TwoFaces { scheme: scheme.name(), vertex });
         }
     }
     Ok(())
+}
+
+/// The first of `count` elements of which `is_wanted` holds.
+pub(crate) fn first<I: Id>(count: usize, is_wanted: impl Fn(I) -> bool + Sync + Send) -> Option<I> {
+    let found = parallel::map_blocks(count, parallel::BLOCK, |block| {
+        block.map(I::from_index).find(|&id| is_wanted(id))
+    });
+    found.into_iter().flatten().next()
 }
 
 #[cfg(test)]

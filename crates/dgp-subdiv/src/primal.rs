@@ -135,7 +135,7 @@ impl<'a> Primal<'a> {
         let end = (1.0 - sharp) * end + sharp * 0.5;
         let side = (1.0 - sharp) * side;
         for h in [2 * e as u32, 2 * e as u32 + 1] {
-            stencil.push(topology.from[h as usize], end);
+            stencil.push(topology.from(h), end);
             if side > 0.0 {
                 let corner = topology.corner(h);
                 let across = if self.kind.splits_polygons() {

@@ -22,7 +22,7 @@ use crate::{
     Counts, Error, RefinementOptions, RefinementPlan, SHARP, SHARPNESS, Scheme, Sharpness,
     face_varying::{FaceVarying, refined_corners},
     options::BoundaryRule,
-    plan::Level,
+    plan::{Level, first},
     topology::{NONE, Topology},
 };
 
@@ -111,17 +111,19 @@ pub fn subdivide(
         refined.attributes_mut().corner.remove(NORMAL);
         refined.attributes_mut().vertex.insert(NORMAL, normals);
     }
-    let counts = |mesh: &Connectivity| Counts {
-        vertices: mesh.vertex_count() as u64,
-        edges: mesh.edge_count() as u64,
-        corners: mesh.halfedges().filter(|&h| !mesh.is_boundary_halfedge(h)).count() as u64,
-        faces: mesh.face_count() as u64,
-    };
     let report = SubdivisionReport {
-        cage: counts(mesh),
-        refined: counts(&refined),
-        euler_characteristic: [mesh.connectivity(), refined.connectivity()]
-            .map(dgp_mesh::topology::euler_characteristic),
+        cage: plan.counts(0),
+        refined: Counts {
+            vertices: refined.vertex_count() as u64,
+            edges: refined.edge_count() as u64,
+            corners: result.corner_count(&plan) as u64,
+            faces: refined.face_count() as u64,
+        },
+        euler_characteristic: [mesh.connectivity(), refined.connectivity()].map(|mesh| {
+            // Neither has vertices on no face.
+            let [v, e, f] = [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()];
+            v as i64 - e as i64 + f as i64
+        }),
         predicted_bytes: plan.predicted_bytes(),
         left_out,
     };
@@ -129,14 +131,18 @@ pub fn subdivide(
 }
 
 pub(crate) fn check_finite(positions: &[DVec3]) -> Result<(), Error> {
-    match positions.iter().position(|p| !p.is_finite()) {
-        Some(vertex) => Err(Error::NotFinite { vertex: VertexId::new(vertex) }),
-        None => Ok(()),
-    }
+    let is_bad = |v: VertexId| !positions[v.index()].is_finite();
+    first(positions.len(), is_bad).map_or(Ok(()), |vertex| Err(Error::NotFinite { vertex }))
 }
 
 /// Which faces of the last level become those of the result, and the vertices and corners with them.
-struct Selection {
+struct Selection(
+    /// `None` if all do.
+    Option<Part>,
+);
+
+/// Elements of the last level, in order.
+struct Part {
     faces: Vec<u32>,
     vertices: Vec<u32>,
     corners: Vec<u32>,
@@ -144,44 +150,66 @@ struct Selection {
 
 impl Selection {
     fn new(mesh: &Mesh, plan: &RefinementPlan) -> Self {
-        let topology = &plan.last().topology;
-        let count = topology.vertex_count() as u32;
         if plan.options().boundary != BoundaryRule::None {
-            return Selection {
-                faces: (0..topology.face_count() as u32).collect(),
-                vertices: (0..count).collect(),
-                corners: (0..topology.corner_count() as u32).collect(),
-            };
+            return Selection(None);
         }
+        let topology = &plan.last().topology;
         let touches = mesh.map_faces(|f| mesh.face_vertices(f).any(|v| mesh.is_boundary_vertex(v)));
         let kept = plan.cage_faces();
         let faces = kept.iter().filter(|(_, cage)| !touches[**cage]).map(|(f, _)| f.index() as u32);
         let faces: Vec<u32> = faces.collect();
+        if faces.len() == topology.face_count() {
+            return Selection(None);
+        }
         let corners: Vec<u32> = faces.iter().flat_map(|&f| topology.corners(f)).collect();
-        let mut is_used = vec![false; count as usize];
+        let mut is_used = vec![false; topology.vertex_count()];
         for &c in &corners {
             is_used[topology.vertex(c) as usize] = true;
         }
+        let count = topology.vertex_count() as u32;
         let vertices = (0..count).filter(|&v| is_used[v as usize]).collect();
-        Selection { faces, vertices, corners }
+        Selection(Some(Part { faces, vertices, corners }))
+    }
+
+    /// The vertex of the last level that is `v` of the result.
+    fn vertex(&self, v: VertexId) -> VertexId {
+        match &self.0 {
+            Some(part) => VertexId::new(part.vertices[v.index()] as usize),
+            None => v,
+        }
+    }
+
+    /// The face of the last level that is `f` of the result.
+    fn face(&self, f: FaceId) -> FaceId {
+        match &self.0 {
+            Some(part) => FaceId::new(part.faces[f.index()] as usize),
+            None => f,
+        }
+    }
+
+    fn corner_count(&self, plan: &RefinementPlan) -> usize {
+        match &self.0 {
+            Some(part) => part.corners.len(),
+            None => plan.counts(plan.levels()).corners as usize,
+        }
     }
 
     fn join(&self, plan: &RefinementPlan, positions: Vec<DVec3>) -> Result<Mesh, Error> {
+        let Some(part) = &self.0 else {
+            return Ok(Mesh::from_parts(plan.connectivity(), positions.into()));
+        };
         let topology = &plan.last().topology;
-        if self.vertices.len() == positions.len() {
-            return Ok(Mesh::from_parts(plan.connectivity()?, positions.into()));
-        }
         let mut number = vec![NONE; positions.len()];
-        self.vertices.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
+        part.vertices.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
         let mut list = FaceList::new();
         let mut face = Vec::new();
-        for &f in &self.faces {
+        for &f in &part.faces {
             face.clear();
             let vertex = |c| VertexId::new(number[topology.vertex(c) as usize] as usize);
             face.extend(topology.corners(f).map(vertex));
             list.push(&face);
         }
-        let positions: Vec<DVec3> = self.vertices.iter().map(|&v| positions[v as usize]).collect();
+        let positions: Vec<DVec3> = part.vertices.iter().map(|&v| positions[v as usize]).collect();
         let connectivity = Connectivity::from_faces(positions.len(), &list)?;
         Ok(Mesh::from_parts(connectivity, positions.into()))
     }
@@ -203,7 +231,7 @@ impl Selection {
             }
         }
         refined.map_vertices(|v| {
-            let old = self.vertices[v.index()] as usize;
+            let old = self.vertex(v).index();
             // A single sharp edge ends there, where the surface is smooth.
             let is_smooth = if topology.is_boundary_vertex(old) {
                 sharp_edges[old] == 0
@@ -220,13 +248,18 @@ impl Selection {
 
     /// For each half-edge of the result that has a face, its corner at the last level.
     fn halfedge_corners(&self, topology: &Topology, refined: &Mesh) -> Vec<Option<u32>> {
+        let Some(part) = &self.0 else {
+            // Half-edges have the numbers they have in the plan.
+            let corner = |&c: &u32| (c != NONE).then_some(c);
+            return topology.halfedge_corner.iter().map(corner).collect();
+        };
         let mut corners = vec![None; refined.halfedge_count()];
-        let mut rest = self.corners.as_slice();
+        let mut rest = part.corners.as_slice();
         for f in refined.faces() {
             let (mine, others) = rest.split_at(topology.corners(topology.face(rest[0])).len());
             rest = others;
             // Both go around the same way, perhaps from another corner on.
-            let vertex = |v: VertexId| self.vertices[v.index()];
+            let vertex = |v: VertexId| self.vertex(v).index() as u32;
             let start = topology.vertex(mine[0]);
             let sides: Vec<HalfedgeId> = refined.face_halfedges(f).collect();
             let first = sides.iter().position(|&h| vertex(refined.from(h)) == start);
@@ -255,13 +288,13 @@ fn carry(
             data = plan.step_stencils(step)?.apply_attributes(&data)?;
             progress.report(0.3 * (step + 1) as f64 / plan.levels() as f64)?;
         }
-        let pick = |v: VertexId| Some(VertexId::new(result.vertices[v.index()] as usize));
-        refined.attributes_mut().vertex = data.gather(result.vertices.len(), pick);
+        let pick = |v: VertexId| Some(result.vertex(v));
+        refined.attributes_mut().vertex = data.gather(refined.vertex_count(), pick);
     }
     if !old.face.is_empty() {
         let cage_faces = plan.cage_faces();
-        let pick = |f: FaceId| Some(cage_faces[FaceId::new(result.faces[f.index()] as usize)]);
-        refined.attributes_mut().face = old.face.gather(result.faces.len(), pick);
+        let pick = |f: FaceId| Some(cage_faces[result.face(f)]);
+        refined.attributes_mut().face = old.face.gather(refined.face_count(), pick);
     }
     progress.report(0.4)?;
     if old.corner.is_empty() && old.edge.is_empty() {
@@ -317,7 +350,7 @@ fn carry_sharpness(
         refined.attributes_mut().edge.insert(SHARPNESS, edges);
     }
     if refined.attributes().vertex.get::<f64>(SHARPNESS).is_some() {
-        let sharp = |v: VertexId| level.creases.vertex(result.vertices[v.index()] as usize);
+        let sharp = |v: VertexId| level.creases.vertex(result.vertex(v).index());
         let vertices = refined.map_vertices(sharp);
         refined.attributes_mut().vertex.insert(SHARPNESS, vertices);
     }

@@ -1,13 +1,16 @@
 //! The connectivity of one level, by corners: what a step of refinement reads and writes in order.
 //!
 //! Corners are counted face after face. The half-edges of edge e are 2e and 2e + 1, as in
-//! [`Connectivity`]; each corner knows the half-edge that starts there and each half-edge its corner, so
-//! the sides of a face need no links: they follow one another. The numbers of the children of a split are
-//! arithmetic on those of the parents (see [`split`](crate::split)), so no edge is ever searched for.
+//! [`Connectivity`]; each corner knows its vertex and the half-edge that starts there, and each half-edge its
+//! corner, so the sides of a face need no links: they follow one another. The numbers of the children of a
+//! split are arithmetic on those of the parents (see [`split`](crate::split)), so no edge is ever searched
+//! for. Where a half-edge leads is read at the corners of a face beside it, which lie side by side.
 
 use std::collections::HashMap;
 
-use dgp_mesh::{Connectivity, FaceList, HalfedgeId, VertexId};
+use dgp_mesh::{Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel};
+
+use crate::Counts;
 
 /// What a half-edge beside a hole has in place of a corner, and an isolated vertex of a half-edge.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -16,12 +19,12 @@ pub(crate) const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Topology {
     pub(crate) starts: Starts,
+    /// The vertex at each corner.
+    pub(crate) corner_vertex: Vec<u32>,
     /// The half-edge that starts at each corner.
     pub(crate) corner_halfedge: Vec<u32>,
     /// The corner each half-edge starts at, [`NONE`] at holes.
     pub(crate) halfedge_corner: Vec<u32>,
-    /// The vertex each half-edge leaves.
-    pub(crate) from: Vec<u32>,
     /// The first half-edge of each vertex, counterclockwise; at a hole the one that has it on its right.
     pub(crate) vertex_halfedge: Vec<u32>,
 }
@@ -40,29 +43,41 @@ pub(crate) enum Starts {
     },
 }
 
+impl Starts {
+    /// Of faces with these numbers of corners.
+    pub(crate) fn of(degrees: impl Iterator<Item = u32>) -> Self {
+        let mut starts = vec![0];
+        let mut end = 0;
+        starts.extend(degrees.map(|degree| {
+            end += degree;
+            end
+        }));
+        let degree = starts.get(1).copied().unwrap_or(3);
+        if starts.windows(2).all(|pair| pair[1] - pair[0] == degree) {
+            return Starts::Every(degree);
+        }
+        let mut corner_face = Vec::with_capacity(end as usize);
+        for (&end, f) in starts[1..].iter().zip(0..) {
+            corner_face.resize(end as usize, f);
+        }
+        Starts::At { starts, corner_face }
+    }
+}
+
 impl Topology {
     /// That of a mesh. Half-edges, faces and vertices keep their numbers.
     pub(crate) fn new(mesh: &Connectivity) -> Self {
-        let mut corner_halfedge = Vec::with_capacity(mesh.halfedge_count());
-        let mut halfedge_corner = vec![NONE; mesh.halfedge_count()];
-        let mut starts = Vec::with_capacity(mesh.face_count() + 1);
-        starts.push(0);
-        for f in mesh.faces() {
-            for h in mesh.face_halfedges(f) {
-                halfedge_corner[h.index()] = corner_halfedge.len() as u32;
-                corner_halfedge.push(h.index() as u32);
-            }
-            starts.push(corner_halfedge.len() as u32);
-        }
-        let first_degree = starts.get(1).copied().unwrap_or(3);
-        let starts = if starts.windows(2).all(|pair| pair[1] - pair[0] == first_degree) {
-            Starts::Every(first_degree)
+        let (starts, corner_halfedge, halfedge_corner) = if let Some(sides) = sides_of::<3>(mesh) {
+            let corners = corners_of::<3>(mesh, &sides);
+            (Starts::Every(3), sides.into_flattened(), corners)
+        } else if let Some(sides) = sides_of::<4>(mesh) {
+            let corners = corners_of::<4>(mesh, &sides);
+            (Starts::Every(4), sides.into_flattened(), corners)
         } else {
-            let degrees = starts.windows(2).zip(0..);
-            let corner_face = degrees
-                .flat_map(|(pair, f)| std::iter::repeat_n(f, (pair[1] - pair[0]) as usize))
-                .collect();
-            Starts::At { starts, corner_face }
+            polygons(mesh)
+        };
+        let vertex = |c: VertexId| {
+            mesh.from(HalfedgeId::new(corner_halfedge[c.index()] as usize)).index() as u32
         };
         let first = |v: VertexId| match mesh.vertex_halfedge(v) {
             // At a hole the mesh keeps the half-edge without a face; the first one comes after it.
@@ -70,23 +85,71 @@ impl Topology {
             Some(h) => h.index() as u32,
             None => NONE,
         };
-        let from = |h: HalfedgeId| mesh.from(h).index() as u32;
         Topology {
             starts,
+            corner_vertex: parallel::map(corner_halfedge.len(), vertex).into_values(),
+            vertex_halfedge: mesh.map_vertices(first).into_values(),
             corner_halfedge,
             halfedge_corner,
-            from: mesh.map_halfedges(from).into_values(),
-            vertex_halfedge: mesh.map_vertices(first).into_values(),
         }
     }
 
     /// The faces as lists of vertices.
     pub(crate) fn faces(&self) -> FaceList {
-        let vertex = |&h: &u32| VertexId::new(self.from[h as usize] as usize);
-        let corners: Vec<VertexId> = self.corner_halfedge.iter().map(vertex).collect();
-        match &self.starts {
-            Starts::Every(degree) => FaceList::from_corners(corners, *degree as usize),
-            Starts::At { starts, .. } => FaceList::from_ends(corners, &starts[1..]),
+        face_list(&self.starts, &self.corner_vertex)
+    }
+
+    /// As a mesh. Half-edges, faces and vertices keep their numbers.
+    pub(crate) fn connectivity(&self) -> Connectivity {
+        let halfedge = |h: u32| HalfedgeId::new(h as usize);
+        let vertices = |v: VertexId| match self.vertex_halfedge[v.index()] {
+            NONE => None,
+            first => Some(halfedge(self.start(first))),
+        };
+        Connectivity::from_arrays(HalfedgeArrays {
+            prev: parallel::map(self.halfedge_corner.len(), |h: HalfedgeId| {
+                halfedge(match self.halfedge_corner[h.index()] {
+                    NONE => self.vertex_halfedge[self.from(h.index() as u32) as usize] ^ 1,
+                    corner => self.corner_halfedge[self.prev(corner) as usize],
+                })
+            }),
+            to: parallel::map(self.halfedge_corner.len(), |h: HalfedgeId| {
+                VertexId::new(self.to(h.index() as u32) as usize)
+            }),
+            face: parallel::map(self.halfedge_corner.len(), |h: HalfedgeId| {
+                match self.halfedge_corner[h.index()] {
+                    NONE => None,
+                    corner => Some(FaceId::new(self.face(corner) as usize)),
+                }
+            }),
+            vertex_halfedge: parallel::map(self.vertex_count(), vertices),
+            face_halfedge: parallel::map(self.face_count(), |f: FaceId| {
+                let first = self.corners(f.index() as u32).start;
+                halfedge(self.corner_halfedge[first as usize])
+            }),
+        })
+    }
+
+    /// What a mesh starts the fan of a vertex with, given what this does: the half-edge without a face where
+    /// there is one.
+    pub(crate) fn start(&self, first: u32) -> u32 {
+        if self.corner(first ^ 1) != NONE {
+            return first;
+        }
+        let mut spoke = first;
+        while self.corner(spoke) != NONE {
+            spoke = self.corner_halfedge[self.prev(self.corner(spoke)) as usize] ^ 1;
+        }
+        spoke
+    }
+
+    /// How many elements there are.
+    pub(crate) fn counts(&self) -> Counts {
+        Counts {
+            vertices: self.vertex_count() as u64,
+            edges: self.edge_count() as u64,
+            corners: self.corner_count() as u64,
+            faces: self.face_count() as u64,
         }
     }
 
@@ -95,7 +158,7 @@ impl Topology {
     }
 
     pub(crate) fn edge_count(&self) -> usize {
-        self.from.len() / 2
+        self.halfedge_corner.len() / 2
     }
 
     pub(crate) fn corner_count(&self) -> usize {
@@ -131,8 +194,11 @@ impl Topology {
     /// The following corner of the same face.
     #[inline]
     pub(crate) fn next(&self, corner: u32) -> u32 {
-        if let Starts::Every(4) = self.starts {
-            return corner & !3 | (corner + 1) & 3;
+        match self.starts {
+            Starts::Every(4) => return corner & !3 | (corner + 1) & 3,
+            Starts::Every(3) if corner % 3 == 2 => return corner - 2,
+            Starts::Every(3) => return corner + 1,
+            _ => {}
         }
         let corners = self.corners(self.face(corner));
         if corner + 1 == corners.end { corners.start } else { corner + 1 }
@@ -154,13 +220,31 @@ impl Topology {
     /// The vertex at a corner.
     #[inline]
     pub(crate) fn vertex(&self, corner: u32) -> u32 {
-        self.from[self.corner_halfedge[corner as usize] as usize]
+        self.corner_vertex[corner as usize]
+    }
+
+    /// The edge of the side that starts at a corner.
+    #[inline]
+    pub(crate) fn edge(&self, corner: u32) -> u32 {
+        self.corner_halfedge[corner as usize] >> 1
+    }
+
+    /// The vertex a half-edge leaves.
+    #[inline]
+    pub(crate) fn from(&self, halfedge: u32) -> u32 {
+        match self.corner(halfedge) {
+            NONE => self.vertex(self.next(self.corner(halfedge ^ 1))),
+            corner => self.vertex(corner),
+        }
     }
 
     /// The vertex a half-edge arrives at.
     #[inline]
     pub(crate) fn to(&self, halfedge: u32) -> u32 {
-        self.from[halfedge as usize ^ 1]
+        match self.corner(halfedge) {
+            NONE => self.vertex(self.corner(halfedge ^ 1)),
+            corner => self.vertex(self.next(corner)),
+        }
     }
 
     /// The corner a half-edge starts at, [`NONE`] at a hole.
@@ -223,24 +307,134 @@ impl Topology {
         for (&h, c) in corner_halfedge.iter().zip(0..) {
             halfedge_corner[h as usize] = c;
         }
-        let ends = edges.ids.iter().flat_map(|&e| [2 * e, 2 * e + 1]);
-        let from: Vec<u32> = ends.map(|h| vertices.of(self.from[h as usize])).collect();
+        for &e in &edges.ids {
+            vertices.of(self.from(2 * e));
+            vertices.of(self.from(2 * e + 1));
+        }
+        let of_cage = faces.iter().flat_map(|&face| self.corners(face)).map(|c| self.vertex(c));
+        let corner_vertex: Vec<u32> = of_cage.map(|v| vertices.of(v)).collect();
         let mut vertex_halfedge = vec![NONE; vertices.ids.len()];
-        for (h, &v) in (0..).zip(&from) {
+        for (h, &corner) in (0..).zip(&halfedge_corner).filter(|(_, corner)| **corner != NONE) {
+            let first = &mut vertex_halfedge[corner_vertex[corner as usize] as usize];
             // Beside a rim the first one has it on its right.
-            let at_rim = halfedge_corner[h as usize ^ 1] == NONE;
-            if at_rim || vertex_halfedge[v as usize] == NONE && halfedge_corner[h as usize] != NONE
-            {
-                vertex_halfedge[v as usize] = h;
+            if halfedge_corner[h as usize ^ 1] == NONE || *first == NONE {
+                *first = h;
             }
         }
         let degree = starts[1];
         let uniform = starts.windows(2).all(|pair| pair[1] - pair[0] == degree);
         let starts =
             if uniform { Starts::Every(degree) } else { Starts::At { starts, corner_face } };
-        let part = Topology { starts, corner_halfedge, halfedge_corner, from, vertex_halfedge };
+        let part =
+            Topology { starts, corner_vertex, corner_halfedge, halfedge_corner, vertex_halfedge };
         (part, vertices.ids, edges.ids)
     }
+}
+
+/// Which corner comes after which and which face it is of, for loops that know the degree of faces.
+pub(crate) trait Corners: Sync {
+    /// The face of a corner.
+    fn face(&self, corner: u32) -> u32;
+    /// The following corner of the same face.
+    fn following(&self, corner: u32) -> u32;
+    /// The preceding corner of the same face.
+    fn preceding(&self, corner: u32) -> u32;
+}
+
+/// Faces of `N` corners each.
+pub(crate) struct Every<const N: u32>;
+
+impl<const N: u32> Corners for Every<N> {
+    #[inline]
+    fn face(&self, corner: u32) -> u32 {
+        corner / N
+    }
+
+    #[inline]
+    fn following(&self, corner: u32) -> u32 {
+        if corner % N == N - 1 { corner - (N - 1) } else { corner + 1 }
+    }
+
+    #[inline]
+    fn preceding(&self, corner: u32) -> u32 {
+        if corner.is_multiple_of(N) { corner + (N - 1) } else { corner - 1 }
+    }
+}
+
+impl Corners for Topology {
+    #[inline]
+    fn face(&self, corner: u32) -> u32 {
+        Topology::face(self, corner)
+    }
+
+    #[inline]
+    fn following(&self, corner: u32) -> u32 {
+        self.next(corner)
+    }
+
+    #[inline]
+    fn preceding(&self, corner: u32) -> u32 {
+        self.prev(corner)
+    }
+}
+
+/// Faces that begin at `starts`, with these vertices at their corners.
+pub(crate) fn face_list(starts: &Starts, corner_vertex: &[u32]) -> FaceList {
+    let vertex = |c: VertexId| VertexId::new(corner_vertex[c.index()] as usize);
+    let corners = parallel::map(corner_vertex.len(), vertex).into_values();
+    match starts {
+        Starts::Every(degree) => FaceList::from_corners(corners, *degree as usize),
+        Starts::At { starts, .. } => FaceList::from_ends(corners, &starts[1..]),
+    }
+}
+
+/// The sides of each face if there are faces and each has `N`.
+fn sides_of<const N: usize>(mesh: &Connectivity) -> Option<Vec<[u32; N]>> {
+    let degree = mesh.faces().next().map(|f| mesh.degree(f));
+    if degree != Some(N) {
+        return None;
+    }
+    let sides = mesh.map_faces(|f| {
+        let mut sides = [mesh.face_halfedge(f); N];
+        for k in (1..N).rev() {
+            sides[k] = mesh.prev(sides[(k + 1) % N]);
+        }
+        let closes = mesh.prev(sides[1]) == sides[0];
+        if closes { sides.map(|h| h.index() as u32) } else { [NONE; N] }
+    });
+    let sides = sides.into_values();
+    let has_other = parallel::map_blocks(sides.len(), parallel::BLOCK, |block| {
+        sides[block].iter().any(|sides| sides[0] == NONE)
+    });
+    (!has_other.contains(&true)).then_some(sides)
+}
+
+/// The corner of each half-edge, given the sides of each face.
+fn corners_of<const N: usize>(mesh: &Connectivity, sides: &[[u32; N]]) -> Vec<u32> {
+    let corner = |h: HalfedgeId| match mesh.face(h) {
+        None => NONE,
+        Some(f) => {
+            let place = sides[f.index()].iter().position(|&side| side == h.index() as u32);
+            (N * f.index() + place.unwrap_or_default()) as u32
+        }
+    };
+    mesh.map_halfedges(corner).into_values()
+}
+
+/// Where the corners of faces of any degrees begin, the half-edge of each corner and the corner of each
+/// half-edge.
+fn polygons(mesh: &Connectivity) -> (Starts, Vec<u32>, Vec<u32>) {
+    let mut corner_halfedge = Vec::with_capacity(mesh.halfedge_count());
+    let mut halfedge_corner = vec![NONE; mesh.halfedge_count()];
+    let starts = Starts::of(mesh.faces().map(|f| {
+        let first = corner_halfedge.len();
+        for h in mesh.face_halfedges(f) {
+            halfedge_corner[h.index()] = corner_halfedge.len() as u32;
+            corner_halfedge.push(h.index() as u32);
+        }
+        (corner_halfedge.len() - first) as u32
+    }));
+    (starts, corner_halfedge, halfedge_corner)
 }
 
 /// Numbers from 0 in the order in which ids are first asked for.

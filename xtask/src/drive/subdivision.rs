@@ -22,7 +22,8 @@ pub(crate) fn scheme(name: &str) -> Outcome<Scheme> {
     })
 }
 
-/// Runs the operation. Planning starts from indexed faces, as a refiner of OpenSubdiv does.
+/// Runs the operation. Planning starts from indexed faces, as a refiner of OpenSubdiv does, and ends with the
+/// faces of the last level, which a plan of ours makes only when asked and a refiner of theirs has.
 pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
     let set = raw::read(&call.input)?;
     let scheme = scheme(&call.scheme)?;
@@ -32,6 +33,7 @@ pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<(
         let cage = built(&set)?;
         Ok(RefinementPlan::new(&cage, &smooth, &refinement, Progress::NONE)?)
     };
+    let with_faces = || planned().map(|plan| (plan.faces(call.levels), plan));
     let positions = set.positions().values();
     match call.operation.as_str() {
         "subdivide" => {
@@ -40,11 +42,11 @@ pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<(
             time(report, call.repeat, || Ok(subdivide(&cage, &smooth, &options, Progress::NONE)?))?;
         }
         "plan-refine" => time(report, call.repeat, || {
-            let plan = planned()?;
+            let (faces, plan) = with_faces()?;
             let refined = plan.refine(positions)?;
-            Ok((plan, refined))
+            Ok((faces, plan, refined))
         })?,
-        "plan" => time(report, call.repeat, planned)?,
+        "plan" => time(report, call.repeat, with_faces)?,
         "refine" => {
             let plan = planned()?;
             time(report, call.repeat, || Ok(plan.refine(positions)?))?;

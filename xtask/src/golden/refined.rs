@@ -228,7 +228,7 @@ impl Cage {
         let [u, v] = plan.limit_tangents(refined)?;
         let size = ours.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let partner = |i: usize| matching.partner[i].unwrap_or(i);
-        let connectivity = plan.connectivity()?;
+        let connectivity = plan.connectivity();
         let as_smooth = RefinementOptions { levels: 0, ..*plan.options() };
         let as_smooth =
             RefinementPlan::new(&connectivity, &Sharpness::new(), &as_smooth, Progress::NONE)?;

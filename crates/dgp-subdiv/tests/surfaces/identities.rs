@@ -162,7 +162,7 @@ fn counts_follow_from_those_before_and_the_genus_stays() {
                     Scheme::DooSabin => assert_eq!(after.vertices, before.corners),
                 }
             }
-            let refined = plan.connectivity().unwrap();
+            let refined = plan.connectivity();
             assert_eq!(refined.vertex_count() as u64, plan.counts(3).vertices);
             assert_eq!(refined.edge_count() as u64, plan.counts(3).edges);
             if is_closed {
@@ -264,7 +264,7 @@ fn tangents_are_those_of_ever_smaller_triangles() {
             let [u, v] = cage.limit_tangents(mesh.positions().values()).unwrap();
             let plan = plan_of(&mesh, scheme, 6, &Sharpness::new());
             let refined = plan.refine(mesh.positions().values()).unwrap();
-            let connectivity: Connectivity = plan.connectivity().unwrap();
+            let connectivity: Connectivity = plan.connectivity();
             for w in mesh.vertices().filter(|&w| !mesh.is_boundary_vertex(w) || is_flat) {
                 let normal = u[w.index()].cross(v[w.index()]);
                 // A corner of one face at a rim has no second tangent where the rim runs straight on.
@@ -326,10 +326,10 @@ fn two_steps_of_sqrt3_cut_edges_in_three() {
     let mesh = shapes::grid(3, 3).unwrap();
     let plan = plan_of(&mesh, Scheme::Sqrt3, 2, &Sharpness::new());
     let rim = |c: &Connectivity| c.edges().filter(|&e| c.is_boundary_edge(e)).count();
-    let refined = plan.connectivity().unwrap();
+    let refined = plan.connectivity();
     assert_eq!(rim(&refined), 3 * rim(&mesh));
     assert_eq!(refined.face_count(), 9 * mesh.face_count());
-    let one = plan_of(&mesh, Scheme::Sqrt3, 1, &Sharpness::new()).connectivity().unwrap();
+    let one = plan_of(&mesh, Scheme::Sqrt3, 1, &Sharpness::new()).connectivity();
     assert_eq!(rim(&one), rim(&mesh));
 }
 
@@ -495,7 +495,7 @@ fn odd_cages_are_refused_or_refined_to_valid_meshes() {
             };
             refined_meshes += 1;
             let refined = plan.refine(cage.positions().values()).unwrap();
-            let fine = Mesh::from_parts(plan.connectivity().unwrap(), refined.clone().into());
+            let fine = Mesh::from_parts(plan.connectivity(), refined.clone().into());
             fine.validate().unwrap();
             let mut all = refined.clone();
             for level in [0, 4] {
