@@ -129,6 +129,13 @@ pub enum Error {
         index: usize,
     },
 
+    /// A ray leads nowhere.
+    #[error("ray {index} has no finite origin, no direction or a negative end; leave it out")]
+    InvalidRay {
+        /// Which of the rays, counted from 0.
+        index: usize,
+    },
+
     /// There is nothing to look for.
     #[error("there are no triangles and no points to find; give a surface that has faces")]
     Empty,

@@ -38,7 +38,7 @@ pub struct ClosestPoint {
 pub(super) struct Nearest {
     pub(super) square: f64,
     pub(super) triangle: usize,
-    pub(super) weights: [f64; 2],
+    pub(super) weights: [f64; 3],
 }
 
 impl TriangleTree {
@@ -114,18 +114,22 @@ impl TriangleTree {
         best
     }
 
-    /// What was found, in the units of the surface.
-    pub(super) fn closest_of(&self, p: DVec3, nearest: &Nearest) -> ClosestPoint {
-        let Nearest { triangle, weights: [v, w], .. } = *nearest;
+    /// A point of a triangle, in the frame.
+    #[inline]
+    pub(super) fn point_at(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
         let [a, b, c] = self.triangles[triangle];
-        let barycentric = [1.0 - v - w, v, w];
-        let point = match barycentric {
+        match weights {
             [1.0, ..] => a,
             [_, 1.0, _] => b,
             [.., 1.0] => c,
-            _ => a + v * (b - a) + w * (c - a),
-        };
-        let point = point * self.nodes.frame.scale.up;
+            [_, v, w] => a + v * (b - a) + w * (c - a),
+        }
+    }
+
+    /// What was found, in the units of the surface.
+    pub(super) fn closest_of(&self, p: DVec3, nearest: &Nearest) -> ClosestPoint {
+        let Nearest { triangle, weights: barycentric, .. } = *nearest;
+        let point = self.point_at(triangle, barycentric) * self.nodes.frame.scale.up;
         ClosestPoint {
             point,
             distance: scale::distance(p, point),
@@ -136,10 +140,10 @@ impl TriangleTree {
     }
 }
 
-/// The squared distance from `p` to a triangle, and the weights of its second and third corner in the
-/// nearest point.
+/// The squared distance from `p` to a triangle, and the weights of its corners in the nearest point:
+/// exactly zero for the corner opposite to a side and exactly one for a corner on which it lies.
 #[inline]
-pub(super) fn closest_in_triangle(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> (f64, [f64; 2]) {
+pub(super) fn closest_in_triangle(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> (f64, [f64; 3]) {
     // Triangles of a smaller (area / product of sides)² are thin.
     const THIN: f64 = 1e-10;
     let (ab, ac, ap) = (b - a, c - a, p - a);
@@ -151,35 +155,38 @@ pub(super) fn closest_in_triangle(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> (f64, [f
     }
     let (d3, d4, d5, d6) = (d1 - bb, d2 - bc, d1 - bc, d2 - cc);
     if d1 <= 0.0 && d2 <= 0.0 {
-        return (ap.length_squared(), [0.0, 0.0]);
+        return (ap.length_squared(), [1.0, 0.0, 0.0]);
     }
     if d3 >= 0.0 && d4 <= d3 {
-        return ((p - b).length_squared(), [1.0, 0.0]);
+        return ((p - b).length_squared(), [0.0, 1.0, 0.0]);
     }
     if d6 >= 0.0 && d5 <= d6 {
-        return ((p - c).length_squared(), [0.0, 1.0]);
+        return ((p - c).length_squared(), [0.0, 0.0, 1.0]);
     }
     let vc = d1 * d4 - d3 * d2;
     let vb = d5 * d2 - d1 * d6;
     let va = d3 * d6 - d5 * d4;
-    let [v, w] = if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        [d1 / bb, 0.0]
+    let [u, v, w] = if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let along = d1 / bb;
+        [1.0 - along, along, 0.0]
     } else if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        [0.0, d2 / cc]
+        let along = d2 / cc;
+        [1.0 - along, 0.0, along]
     } else if va <= 0.0 && d4 >= d3 && d5 >= d6 {
         let along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        [1.0 - along, along]
+        [0.0, 1.0 - along, along]
     } else {
         let sum = va + vb + vc;
-        [vb / sum, vc / sum]
+        let (v, w) = (vb / sum, vc / sum);
+        [(1.0 - v - w).max(0.0), v, w]
     };
-    ((ap - v * ab - w * ac).length_squared(), [v, w])
+    ((ap - v * ab - w * ac).length_squared(), [u, v, w])
 }
 
 /// [`closest_in_triangle`] where the triangle is nearly or wholly a line: the best of its sides and of
 /// what lies inside.
 #[cold]
-fn closest_in_thin_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, [f64; 2]) {
+fn closest_in_thin_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, [f64; 3]) {
     let along = |from: DVec3, to: DVec3| {
         let side = to - from;
         let t = side.dot(p - from) / side.length_squared();
@@ -188,27 +195,27 @@ fn closest_in_thin_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, [f64; 2]) 
     };
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (t_ab, t_ac, t_bc) = (along(a, b), along(a, c), along(b, c));
-    let mut best = (f64::INFINITY, [0.0, 0.0]);
-    let mut offer = |[v, w]: [f64; 2]| {
-        let from = match [v, w] {
-            [0.0, 0.0] => ap,
-            [1.0, 0.0] => p - b,
-            [0.0, 1.0] => p - c,
-            _ => ap - v * ab - w * ac,
+    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    let mut offer = |weights: [f64; 3]| {
+        let from = match weights {
+            [1.0, ..] => ap,
+            [_, 1.0, _] => p - b,
+            [.., 1.0] => p - c,
+            [_, v, w] => ap - v * ab - w * ac,
         };
         let square = from.length_squared();
         if square < best.0 {
-            best = (square, [v, w]);
+            best = (square, weights);
         }
     };
-    offer([t_ab, 0.0]);
-    offer([0.0, t_ac]);
-    offer([1.0 - t_bc, t_bc]);
+    offer([1.0 - t_ab, t_ab, 0.0]);
+    offer([1.0 - t_ac, 0.0, t_ac]);
+    offer([0.0, 1.0 - t_bc, t_bc]);
     let normal = ab.cross(ac);
     let square = normal.length_squared();
     let [v, w] = [ap.cross(ac).dot(normal) / square, ab.cross(ap).dot(normal) / square];
     if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
-        offer([v, w]);
+        offer([1.0 - v - w, v, w]);
     }
     best
 }

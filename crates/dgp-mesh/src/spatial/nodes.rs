@@ -118,6 +118,39 @@ impl Target for Far {
     }
 }
 
+/// A ray, as boxes see it: by the sides at which it enters and leaves.
+pub(super) struct Beam {
+    /// The end of the interval of its start that makes it enter a box as early as can be.
+    pub(super) near: [f32; 3],
+    /// The end that makes it leave a box as late as can be.
+    pub(super) far: [f32; 3],
+    /// One over its direction: finite and not zero.
+    pub(super) inverse: [f32; 3],
+}
+
+impl Beam {
+    /// Where it enters each child, and where it leaves, but for a part of 2⁻²¹.
+    #[inline]
+    fn interval(&self, node: &Node) -> ([f32; WIDTH], [f32; WIDTH]) {
+        let (mut enter, mut leave) = ([0.0; WIDTH], [f32::INFINITY; WIDTH]);
+        for axis in 0..3 {
+            let inverse = self.inverse[axis];
+            let (first, last) = if inverse > 0.0 {
+                (&node.lo[axis], &node.hi[axis])
+            } else {
+                (&node.hi[axis], &node.lo[axis])
+            };
+            for i in 0..WIDTH {
+                let a = (first[i] - self.near[axis]) * inverse;
+                let b = (last[i] - self.far[axis]) * inverse;
+                enter[i] = if a > enter[i] { a } else { enter[i] };
+                leave[i] = if b < leave[i] { b } else { leave[i] };
+            }
+        }
+        (enter, leave)
+    }
+}
+
 /// The hierarchy over items `0..n`.
 #[derive(Clone, Debug)]
 pub(super) struct Nodes {
@@ -170,6 +203,46 @@ impl Nodes {
                     continue;
                 }
                 // The nearest on top.
+                let mut place = waiting;
+                while place > bottom && stack[place - 1].0 < distance {
+                    stack[place] = stack[place - 1];
+                    place -= 1;
+                }
+                stack[place] = (distance, node.first[i], node.count[i]);
+                waiting += 1;
+            }
+        }
+    }
+
+    /// Offers leaves on `beam` to `visit(items)`, nearest first. `visit` gives how far along the beam more
+    /// is wanted, which starts at `limit`.
+    pub(super) fn along(
+        &self,
+        beam: &Beam,
+        mut limit: f32,
+        mut visit: impl FnMut(Range<usize>) -> f32,
+    ) {
+        const SLACK: f32 = 1.0 + 1.0 / (1 << 19) as f32;
+        let mut stack = [(0.0_f32, 0_u32, 0_u32); STACK];
+        let mut waiting = usize::from(!self.nodes.is_empty());
+        while waiting > 0 {
+            waiting -= 1;
+            let (distance, first, count) = stack[waiting];
+            if distance > limit {
+                continue;
+            }
+            if count > 0 {
+                limit = visit(first as usize..(first + count) as usize);
+                continue;
+            }
+            let node = &self.nodes[first as usize];
+            let (enter, leave) = beam.interval(node);
+            let bottom = waiting;
+            for i in 0..WIDTH {
+                let distance = enter[i];
+                if distance > leave[i] * SLACK || distance > limit {
+                    continue;
+                }
                 let mut place = waiting;
                 while place > bottom && stack[place - 1].0 < distance {
                     stack[place] = stack[place - 1];
