@@ -1,32 +1,41 @@
-//! Building the hierarchy: from the top, each time where the surface area heuristic says.
+//! Building the hierarchy: along a curve through space at first, then by the surface area heuristic.
 //!
 //! ```text
 //! cost of a cut = area(left box) · number(left) + area(right box) · number(right)
 //! ```
 //!
-//! Items fall into equal bins along the axis in which their centers extend furthest; the cut is the
-//! cheapest between bins. Two rounds of cuts give the four children of a node.
+//! Items are sorted along the Z-order curve. Large parts are cut where the highest bit of the curve
+//! changes, which is the middle of a cell of space. In parts of some hundred items, items fall into equal
+//! bins along the axis in which their centers extend furthest; the cut is the cheapest between bins. The
+//! last eight are halved. Two rounds of cuts give the four children of a node.
 //!
 //! - Input: boxes, in single precision.
-//! - Cost: O(n log n), in parallel but for the first cuts; memory of 36 bytes an item while it runs.
-//! - Guarantees: at most 36 levels (beyond 18 cuts go through the middle of the list); the same bits
-//!   for any number of threads.
+//! - Cost: O(n log n), in parallel but for the sort; memory of 80 bytes an item while it runs.
+//! - Guarantees: a bounded number of levels (from some depth on cuts go through the middle of the list);
+//!   the same bits for any number of threads.
 //! - Reference: Wald, "On fast construction of SAH-based bounding volume hierarchies", IEEE Symposium
-//!   on Interactive Ray Tracing 2007; Goldsmith and Salmon, "Automatic creation of object hierarchies
-//!   for ray tracing", IEEE Computer Graphics and Applications 7(5), 1987 (the heuristic).
+//!   on Interactive Ray Tracing 2007; Lauterbach, Garland, Sengupta, Luebke and Manocha, "Fast BVH
+//!   construction on GPUs", Computer Graphics Forum 28(2), 2009 (the curve); Goldsmith and Salmon,
+//!   "Automatic creation of object hierarchies for ray tracing", IEEE Computer Graphics and Applications
+//!   7(5), 1987 (the heuristic).
 //! - Departs from it: one axis only is binned, which costs a third and loses nothing on surfaces.
 
-use super::nodes::{Node, WIDTH};
+use super::{
+    curve,
+    nodes::{Node, WIDTH},
+};
 use crate::parallel;
 
 /// The most items in a leaf.
 const LEAF: usize = 2;
-/// The bins items fall into, and those for few items.
+/// The bins items fall into.
 const BINS: usize = 16;
-const FEW_BINS: usize = 8;
-const FEW: usize = 32;
+/// So many items are halved.
+const FEW: usize = 8;
+/// Parts of more items are cut along the curve.
+const CLUSTER: usize = 512;
 /// From this depth on cuts go through the middle.
-const DEEP: usize = 18;
+const DEEP: usize = 22;
 /// The largest depth: each further level has a quarter of the items, of 2³² at most.
 pub(super) const MAX_DEPTH: usize = DEEP + 18;
 /// Parts of more items are built side by side.
@@ -87,19 +96,11 @@ struct Group<'a> {
 
 impl<'a> Group<'a> {
     fn new(items: &'a mut [Item], start: usize) -> Self {
-        let blocks = parallel::map_blocks(items.len(), parallel::BLOCK, |range| {
-            let (mut bounds, mut centers) = (Bounds::EMPTY, Bounds::EMPTY);
-            for item in &items[range] {
-                bounds.grow(&item.lo, &item.hi);
-                let center = center(item);
-                centers.grow(&center, &center);
-            }
-            (bounds, centers)
-        });
         let (mut bounds, mut centers) = (Bounds::EMPTY, Bounds::EMPTY);
-        for (b, c) in blocks {
-            bounds.grow(&b.lo, &b.hi);
-            centers.grow(&c.lo, &c.hi);
+        for item in &*items {
+            bounds.grow(&item.lo, &item.hi);
+            let center = center(item);
+            centers.grow(&center, &center);
         }
         Group { items, start, bounds, centers }
     }
@@ -108,14 +109,18 @@ impl<'a> Group<'a> {
     fn cut(self, is_deep: bool) -> [Group<'a>; 2] {
         let extent = [0, 1, 2].map(|i| self.centers.hi[i] - self.centers.lo[i]);
         let axis = (0..3).fold(0, |best, i| if extent[i] > extent[best] { i } else { best });
-        let bins = if self.items.len() <= FEW { FEW_BINS } else { BINS };
-        let factor = bins as f32 / extent[axis];
+        let factor = BINS as f32 / extent[axis];
         if is_deep || !factor.is_finite() {
+            return self.halves();
+        }
+        if self.items.len() <= FEW {
+            let place = |item: &Item| item.lo[axis] + item.hi[axis];
+            self.items.sort_unstable_by(|a, b| place(a).total_cmp(&place(b)).then(a.id.cmp(&b.id)));
             return self.halves();
         }
         let origin = self.centers.lo[axis];
         let bin_of = |item: &Item| {
-            (((item.lo[axis] + item.hi[axis] - origin) * factor) as usize).min(bins - 1)
+            (((item.lo[axis] + item.hi[axis] - origin) * factor) as usize).min(BINS - 1)
         };
         let mut boxes = [Bounds::EMPTY; BINS];
         let mut counts = [0_u32; BINS];
@@ -124,7 +129,7 @@ impl<'a> Group<'a> {
             boxes[bin].grow(&item.lo, &item.hi);
             counts[bin] += 1;
         }
-        let cut = cheapest(&boxes[..bins], &counts[..bins]);
+        let cut = cheapest(&boxes, &counts);
         self.divide(|item| bin_of(item) < cut)
     }
 
@@ -173,18 +178,17 @@ impl<'a> Group<'a> {
 }
 
 /// The number of bins left of the cheapest cut.
-fn cheapest(boxes: &[Bounds], counts: &[u32]) -> usize {
-    let bins = boxes.len();
+fn cheapest(boxes: &[Bounds; BINS], counts: &[u32; BINS]) -> usize {
     let mut right_costs = [0.0; BINS];
     let (mut bounds, mut count) = (Bounds::EMPTY, 0);
-    for i in (1..bins).rev() {
+    for i in (1..BINS).rev() {
         bounds.grow(&boxes[i].lo, &boxes[i].hi);
         count += counts[i];
         right_costs[i] = bounds.area() * count as f32;
     }
     let (mut bounds, mut count) = (Bounds::EMPTY, 0);
     let mut best = (f32::INFINITY, 1);
-    for i in 1..bins {
+    for i in 1..BINS {
         bounds.grow(&boxes[i - 1].lo, &boxes[i - 1].hi);
         count += counts[i - 1];
         let cost = bounds.area() * count as f32 + right_costs[i];
@@ -232,41 +236,114 @@ impl Part {
 }
 
 /// The nodes over `items`, which it brings into the order of the leaves. No items, no nodes.
-pub(super) fn build(items: &mut [Item]) -> Vec<Node> {
+pub(super) fn build(items: &mut Vec<Item>) -> Vec<Node> {
     if items.is_empty() {
         return Vec::new();
     }
-    let part = build_part(Group::new(items, 0), 0);
+    let key = |i: usize| {
+        let [x, y, z, _] = center(&items[i]).map(|x| 0.5 * f64::from(x));
+        curve::key([x, y, z])
+    };
+    let keys = curve::sorted(items.len(), key);
+    let sorted = |i: crate::VertexId| items[keys[i.index()].1 as usize];
+    *items = parallel::map(items.len(), sorted).into_values();
+    let (_, part) = build_part(Run { items, keys: &keys, start: 0 }, 0);
     let mut nodes = Vec::with_capacity(part.len());
     part.append(&mut nodes);
     nodes
 }
 
-fn build_part(group: Group<'_>, depth: usize) -> Part {
-    if group.items.len() <= PARALLEL {
-        let mut nodes = Vec::with_capacity(group.items.len() / 2 + 1);
-        build_nodes(group, depth, &mut nodes);
-        return Part::Whole(nodes);
-    }
-    let is_deep = depth >= DEEP;
-    let [left, right] = group.cut(is_deep);
-    let children = |half: Group<'_>| {
-        if half.items.len() <= PARALLEL {
-            return vec![(half.bounds, build_part(half, depth + 1))];
+/// Items in order of their keys.
+struct Run<'a> {
+    items: &'a mut [Item],
+    keys: &'a [(u32, u32)],
+    /// Where the first of them stands among all.
+    start: usize,
+}
+
+impl<'a> Run<'a> {
+    /// Both sides of the change of the highest bit, or all of it if it is small or has no such change.
+    fn cut(self) -> (Run<'a>, Option<Run<'a>>) {
+        let Run { items, keys, start } = self;
+        let (Some(first), Some(last)) = (keys.first(), keys.last()) else {
+            return (Run { items, keys, start }, None);
+        };
+        if items.len() <= CLUSTER || first.0 == last.0 {
+            return (Run { items, keys, start }, None);
         }
-        let [a, b] = half.cut(is_deep);
-        let boxes = [a.bounds, b.bounds];
-        let (a, b) = parallel::join(|| build_part(a, depth + 1), || build_part(b, depth + 1));
-        vec![(boxes[0], a), (boxes[1], b)]
-    };
-    let (left, right) = parallel::join(|| children(left), || children(right));
-    let mut node = Node::EMPTY;
-    let mut parts = Vec::with_capacity(WIDTH);
-    for (i, (bounds, part)) in left.into_iter().chain(right).enumerate() {
-        set_box(&mut node, i, &bounds);
-        parts.push((i, part));
+        let bit = (first.0 ^ last.0).ilog2();
+        let middle = keys.partition_point(|key| key.0 >> bit & 1 == 0);
+        let (left, right) = items.split_at_mut(middle);
+        let (left_keys, right_keys) = keys.split_at(middle);
+        let right = Run { items: right, keys: right_keys, start: start + middle };
+        (Run { items: left, keys: left_keys, start }, Some(right))
     }
-    Part::Above(Box::new(node), parts)
+
+    /// Two to four runs, or one that is not to be cut along the curve.
+    fn quarters(self) -> Vec<Run<'a>> {
+        let (left, right) = self.cut();
+        let Some(right) = right else { return vec![left] };
+        let halves = [left.cut(), right.cut()];
+        halves.into_iter().flat_map(|(a, b)| std::iter::once(a).chain(b)).collect()
+    }
+}
+
+/// The nodes over `run`, and the box around it.
+fn build_part(run: Run<'_>, depth: usize) -> (Bounds, Part) {
+    let is_small = run.items.len() <= PARALLEL;
+    let mut runs = if is_small { vec![run] } else { run.quarters() };
+    if runs.len() == 1 {
+        let mut nodes = Vec::new();
+        let mut bounds = Bounds::EMPTY;
+        if let Some(run) = runs.pop() {
+            nodes.reserve(run.items.len() / 2 + 1);
+            bounds = build_run(run, depth, &mut nodes);
+        }
+        return (bounds, Part::Whole(nodes));
+    }
+    let parts = build_parts(runs, depth + 1);
+    let mut node = Node::EMPTY;
+    let mut all = Bounds::EMPTY;
+    for (i, (bounds, _)) in parts.iter().enumerate() {
+        set_box(&mut node, i, bounds);
+        all.grow(&bounds.lo, &bounds.hi);
+    }
+    let parts = parts.into_iter().map(|(_, part)| part).enumerate().collect();
+    (all, Part::Above(Box::new(node), parts))
+}
+
+/// The parts over `runs`, side by side.
+fn build_parts(mut runs: Vec<Run<'_>>, depth: usize) -> Vec<(Bounds, Part)> {
+    if runs.len() <= 1 {
+        return runs.into_iter().map(|run| build_part(run, depth)).collect();
+    }
+    let others = runs.split_off(runs.len() / 2);
+    let (mut parts, right) =
+        parallel::join(|| build_parts(runs, depth), || build_parts(others, depth));
+    parts.extend(right);
+    parts
+}
+
+/// Adds the node over `run` and all below it; returns the box around it.
+fn build_run(run: Run<'_>, depth: usize, nodes: &mut Vec<Node>) -> Bounds {
+    let mut runs = run.quarters();
+    if runs.len() == 1 {
+        let Some(run) = runs.pop() else { return Bounds::EMPTY };
+        let group = Group::new(run.items, run.start);
+        let bounds = group.bounds;
+        build_nodes(group, depth, nodes);
+        return bounds;
+    }
+    let index = nodes.len();
+    nodes.push(Node::EMPTY);
+    let mut all = Bounds::EMPTY;
+    for (i, run) in runs.into_iter().enumerate() {
+        nodes[index].first[i] = nodes.len() as u32;
+        let bounds = build_run(run, depth + 1, nodes);
+        set_box(&mut nodes[index], i, &bounds);
+        all.grow(&bounds.lo, &bounds.hi);
+    }
+    all
 }
 
 /// Adds the node over `group` and all below it.

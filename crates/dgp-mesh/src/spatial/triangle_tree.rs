@@ -1,5 +1,7 @@
 //! The hierarchy over the triangles of a surface.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec3;
 
 use super::{
@@ -44,16 +46,14 @@ impl TriangleTree {
     /// Errors: [`Error::NonFinite`] if a vertex of a face is not finite; cancelled before the build.
     pub fn new(surface: &impl Surface, progress: Progress<'_>) -> Result<Self, Error> {
         progress.report(0.0)?;
-        let (list, sources) = triangles_of(surface)?;
-        progress.report(0.1)?;
+        let (list, sources) = triangles_of(surface);
         let positions = surface.vertex_positions().values();
-        let bounds = bounds_of(positions, &list);
+        let bounds = bounds_of(positions, &list)?;
         let frame = Frame::of(bounds);
-        let mut items = Vec::with_capacity(list.len());
-        let blocks = parallel::map_blocks(list.len(), parallel::BLOCK, |range| {
-            range.map(|i| item(&frame, i, list[i].map(|v| positions[v.index()]))).collect()
+        progress.report(0.1)?;
+        let mut items = gather(list.len(), |i| {
+            item(&frame, i, list[i as usize].map(|v| positions[v.index()]))
         });
-        blocks.into_iter().for_each(|block: Vec<Item>| items.extend(block));
         progress.report(0.2)?;
         let nodes = build(&mut items);
         progress.report(0.8)?;
@@ -92,54 +92,31 @@ fn gather<T: Send>(len: usize, f: impl Fn(u32) -> T + Sync + Send) -> Vec<T> {
 
 /// The box of a triangle around the middle of the frame.
 #[inline]
-fn item(frame: &Frame, i: usize, corners: [DVec3; 3]) -> Item {
+fn item(frame: &Frame, id: u32, corners: [DVec3; 3]) -> Item {
     let [a, b, c] = corners.map(|p| frame.scaled(p));
     let (lo, _) = frame.rounded(a.min(b).min(c));
     let (_, hi) = frame.rounded(a.max(b).max(c));
-    Item { lo: [lo[0], lo[1], lo[2], 0.0], hi: [hi[0], hi[1], hi[2], 0.0], id: i as u32 }
+    Item { lo: [lo[0], lo[1], lo[2], 0.0], hi: [hi[0], hi[1], hi[2], 0.0], id }
 }
-
-type Triangles = (Vec<[VertexId; 3]>, Option<Vec<FaceId>>);
 
 /// The triangles of all faces, and the face of each unless triangle i is face i.
-fn triangles_of(surface: &impl Surface) -> Result<Triangles, Error> {
-    let count = surface.number_of_faces();
-    let positions = surface.vertex_positions();
-    let check = |corners: &[VertexId]| match corners.iter().find(|&&v| !positions[v].is_finite()) {
-        Some(&vertex) => Err(Error::NonFinite { vertex }),
-        None => Ok(()),
-    };
-    type Block = Result<Option<Vec<[VertexId; 3]>>, Error>;
-    let blocks: Vec<Block> = parallel::map_blocks(count, parallel::BLOCK, |range| {
-        let mut list = Vec::with_capacity(range.len());
-        for f in range.map(FaceId::new) {
-            let Some(corners) = surface.corners_of_triangle(f) else { return Ok(None) };
-            check(&corners)?;
-            list.push(corners);
-        }
-        Ok(Some(list))
+fn triangles_of(surface: &impl Surface) -> (Vec<[VertexId; 3]>, Option<Vec<FaceId>>) {
+    let has_polygons = AtomicBool::new(false);
+    let list = gather(surface.number_of_faces(), |f| {
+        surface.corners_of_triangle(FaceId::new(f as usize)).unwrap_or_else(|| {
+            has_polygons.store(true, Ordering::Relaxed);
+            [VertexId::new(0); 3]
+        })
     });
-    let mut list = Vec::with_capacity(count);
-    for block in blocks {
-        match block? {
-            Some(block) => list.extend(block),
-            None => return polygons_of(surface, check),
-        }
+    if !has_polygons.into_inner() {
+        return (list, None);
     }
-    Ok((list, None))
-}
-
-fn polygons_of(
-    surface: &impl Surface,
-    check: impl Fn(&[VertexId]) -> Result<(), Error>,
-) -> Result<Triangles, Error> {
     let positions = surface.vertex_positions();
     let (mut list, mut sources) = (Vec::new(), Vec::new());
     let (mut polygon, mut points) = (Vec::new(), Vec::new());
     for f in (0..surface.number_of_faces()).map(FaceId::new) {
         polygon.clear();
         polygon.extend(surface.polygon(f));
-        check(&polygon)?;
         points.clear();
         points.extend(polygon.iter().map(|&v| positions[v]));
         for corners in triangulate_polygon(&points, TriangulationMethod::Ears) {
@@ -147,13 +124,27 @@ fn polygons_of(
             sources.push(f);
         }
     }
-    Ok((list, Some(sources)))
+    (list, Some(sources))
 }
 
-/// The box of the corners of `list`.
-fn bounds_of(positions: &[DVec3], list: &[[VertexId; 3]]) -> Option<BoundingBox> {
+/// The box of the corners of `list`, all of which must be finite.
+fn bounds_of(positions: &[DVec3], list: &[[VertexId; 3]]) -> Result<Option<BoundingBox>, Error> {
     let blocks = parallel::map_blocks(list.len(), parallel::BLOCK, |range| {
-        BoundingBox::of_points(list[range].as_flattened().iter().map(|v| positions[v.index()]))
+        let corners = list[range].as_flattened();
+        let mut bounds = BoundingBox::of_point(positions[corners[0].index()]);
+        for &vertex in corners {
+            let p = positions[vertex.index()];
+            if !p.is_finite() {
+                return Err(Error::NonFinite { vertex });
+            }
+            bounds = bounds.union(&BoundingBox::of_point(p));
+        }
+        Ok(bounds)
     });
-    blocks.into_iter().flatten().reduce(|a, b| a.union(&b))
+    let mut all: Option<BoundingBox> = None;
+    for block in blocks.into_iter().filter(|_| !list.is_empty()) {
+        let block = block?;
+        all = Some(all.map_or(block, |all| all.union(&block)));
+    }
+    Ok(all)
 }
