@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 34] = [
+pub(crate) const QUANTITIES: [(&str, &str); 42] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -51,6 +51,14 @@ pub(crate) const QUANTITIES: [(&str, &str); 34] = [
     ("limits_loop", "1e-12 · largest coordinate"),
     ("limits_catmull_clark", "1e-12 · largest coordinate"),
     ("limit_normals", "1e-12 · condition"),
+    ("closest_near", "sums to 1e-12"),
+    ("closest_box", "sums to 1e-12"),
+    ("ray_first", "sums to 1e-9"),
+    ("ray_any", "equal"),
+    ("segment_any", "equal"),
+    ("box_faces", "equal"),
+    ("self_intersections", "equal"),
+    ("hausdorff", "within the bound"),
 ];
 
 /// How one quantity of one input compares.

@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 23] = [
     "info",
     "check",
     "convert",
@@ -18,6 +18,8 @@ const COMMANDS: [&str; 21] = [
     "laplacian",
     "heat",
     "correspond",
+    "compare",
+    "distance",
     "solve",
     "shape",
     "render",

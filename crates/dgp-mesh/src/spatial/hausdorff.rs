@@ -11,12 +11,13 @@
 //!                       ≤ max over v of d(v, B) + l/√3            no point is further from a corner
 //! ```
 //!
-//! are upper bounds; of the triangles b those nearest to the corners are tried. Triangles whose upper
+//! are upper bounds; of the triangles b those nearest to the corners are tried, and then that nearest to the
+//! center. Triangles whose upper
 //! bound exceeds what is known from below by more than the tolerance are halved across their longest
 //! side, those of the largest bound first.
 //!
 //! - Input: any two surfaces with triangles.
-//! - Cost: a nearest point for each vertex, then for each halving. Where the distance is nearly the same
+//! - Cost: a nearest point for each vertex, then up to three for each halving. Where the distance is nearly the same
 //!   everywhere, as between two offset surfaces of fine triangles, their number is that of cells of
 //!   the size of the tolerance; [`HausdorffOptions::queries`] ends that.
 //! - Guarantees: lower ≤ h ≤ upper but for rounding, which is 2⁻⁴⁸ of the coordinates and added. The same
@@ -178,83 +179,65 @@ impl Lower {
     }
 }
 
-/// How many triangles are halved side by side, and how often each before they are compared again.
+/// How many triangles are halved side by side, and after how many queries each is compared again.
 const ROUND: usize = 4096;
 const HALVINGS: usize = 32;
 
 impl Search<'_> {
     fn run(&self, budget: usize, progress: Progress<'_>) -> Result<HausdorffBounds, Error> {
         let probes = self.vertex_probes(progress.part(0.0, 0.4))?;
-        let mut queries = probes.len();
         let corners = |i: usize| self.from.vertices[i].map(|v| probes[v.index()]);
-        let mut lower = Lower { distance: -1.0, probe: Probe::NONE, source: 0 };
+        let mut all = Findings::default();
         for i in 0..self.from.len() {
             for probe in corners(i).into_iter().flatten() {
-                lower.raise(probe, i as u32);
+                all.lower.raise(probe, i as u32);
             }
         }
-        let known = lower.distance;
+        let start = all.lower;
         let blocks = parallel::map_blocks(self.from.len(), parallel::BLOCK, |range| {
-            let mut pieces = Vec::new();
-            let mut least = 0.0_f64;
+            let mut found = Findings { lower: start, ..Findings::default() };
             for i in range {
                 let [Some(a), Some(b), Some(c)] = corners(i) else { continue };
-                let piece = self.piece([a, b, c], f64::INFINITY, i as u32);
-                if piece.upper > known + self.tolerance {
-                    pieces.push(piece);
-                } else {
-                    least = least.max(piece.upper);
-                }
+                self.settle([a, b, c], f64::INFINITY, i as u32, &mut found);
             }
-            (pieces, least)
+            found
         });
-        // What was given up has no larger distance than this.
-        let mut settled = 0.0_f64;
-        let mut pieces = Vec::new();
-        for (block, least) in blocks {
-            pieces.extend(block);
-            settled = settled.max(least);
-        }
+        blocks.into_iter().for_each(|found| all.absorb(found));
 
-        let first_count = queries;
         let mut open = f64::INFINITY;
-        while !pieces.is_empty() && queries - first_count < budget {
-            let known = lower.distance;
-            pieces.retain(|piece| {
+        while all.queries < budget {
+            let known = all.lower.distance;
+            let settled = &mut all.settled;
+            all.pieces.retain(|piece| {
                 let is_open = piece.upper > known + self.tolerance;
-                settled = if is_open { settled } else { settled.max(piece.upper) };
+                *settled = if is_open { *settled } else { settled.max(piece.upper) };
                 is_open
             });
-            let highest = pieces.iter().map(|piece| piece.upper).fold(known, f64::max);
+            let highest = all.pieces.iter().map(|piece| piece.upper).fold(known, f64::max);
             open = open.min(highest - known);
-            let part = (self.tolerance / open.max(self.tolerance)).clamp(0.0, 1.0);
-            progress.part(0.4, 1.0).report(part.max((queries - first_count) as f64 / budget as f64))?;
-            let count = ROUND.min(pieces.len());
+            let near = self.tolerance / open.max(self.tolerance);
+            let part = near.max(all.queries as f64 / budget as f64).min(1.0);
+            progress.part(0.4, 1.0).report(part)?;
+            let count = ROUND.min(all.pieces.len());
             if count == 0 {
                 break;
             }
-            if count < pieces.len() {
-                pieces.select_nth_unstable_by(count - 1, by_upper);
+            if count < all.pieces.len() {
+                all.pieces.select_nth_unstable_by(count - 1, by_upper);
             }
-            pieces[..count].sort_unstable_by(by_upper);
-            let rest = pieces.split_off(count);
+            all.pieces[..count].sort_unstable_by(by_upper);
+            let rest = all.pieces.split_off(count);
+            let highest = std::mem::replace(&mut all.pieces, rest);
             let blocks = parallel::map_blocks(count, 16, |range| {
-                let halved = range.map(|i| self.halve(pieces[i], lower));
+                let halved = range.map(|i| self.halve(highest[i], all.lower));
                 halved.collect::<Vec<_>>()
             });
-            pieces = rest;
-            for halved in blocks.into_iter().flatten() {
-                queries += halved.queries;
-                settled = settled.max(halved.settled);
-                if halved.lower.distance > lower.distance {
-                    lower = halved.lower;
-                }
-                pieces.extend(halved.pieces);
-            }
+            blocks.into_iter().flatten().for_each(|found| all.absorb(found));
         }
         progress.report(1.0)?;
-        let open = pieces.iter().map(|piece| piece.upper).fold(0.0, f64::max);
-        Ok(self.bounds(&lower, settled.max(open), queries))
+        let open = all.pieces.iter().map(|piece| piece.upper).fold(0.0, f64::max);
+        let queries = all.queries + probes.iter().flatten().count();
+        Ok(self.bounds(&all.lower, all.settled.max(open), queries))
     }
 
     /// The probe of each vertex of A that a triangle has.
@@ -300,38 +283,53 @@ impl Search<'_> {
         Probe { point, distance: square.sqrt(), triangle: triangle as u32 }
     }
 
-    /// A piece with its upper bound, which is not larger than `parent`'s.
-    fn piece(&self, corners: [Probe; 3], parent: f64, source: u32) -> Piece {
+    /// Bounds a piece from above, by no more than `parent`, and keeps it if that does not settle it.
+    fn settle(&self, corners: [Probe; 3], parent: f64, source: u32, found: &mut Findings) {
         let [a, b, c] = corners;
         let sides = [b.point - c.point, c.point - a.point, a.point - b.point];
         let longest = sides.map(DVec3::length_squared).into_iter().fold(0.0, f64::max).sqrt();
         let farthest = a.distance.max(b.distance).max(c.distance);
         let mut upper = parent.min(farthest + longest * (1.0 / 3.0_f64.sqrt()) * (1.0 + 1e-12));
-        for (k, b) in corners.iter().enumerate() {
-            if corners[..k].iter().any(|other| other.triangle == b.triangle) {
-                continue;
+        for (k, probe) in corners.iter().enumerate() {
+            if corners[..k].iter().all(|other| other.triangle != probe.triangle) {
+                upper = upper.min(self.to_triangle(&corners, probe.triangle));
             }
-            let triangle = &self.to.triangles[b.triangle as usize];
-            let mut square = 0.0_f64;
-            for corner in &corners {
-                square = square.max(closest_in_triangle(corner.point, triangle).0);
-            }
-            upper = upper.min(square.sqrt());
         }
-        Piece { corners, upper: upper.max(farthest), source }
+        if upper > found.lower.distance + self.tolerance {
+            let center = (a.point + b.point + c.point) / 3.0;
+            let center = self.probe(center, Some(a.triangle as usize));
+            found.queries += 1;
+            found.lower.raise(center, source);
+            if corners.iter().all(|other| other.triangle != center.triangle) {
+                upper = upper.min(self.to_triangle(&corners, center.triangle));
+            }
+        }
+        let upper = upper.max(farthest);
+        if upper > found.lower.distance + self.tolerance {
+            found.pieces.push(Piece { corners, upper, source });
+        } else {
+            found.settled = found.settled.max(upper);
+        }
+    }
+
+    /// The largest distance of a piece to one triangle of B: at a corner.
+    fn to_triangle(&self, corners: &[Probe; 3], triangle: u32) -> f64 {
+        let triangle = &self.to.triangles[triangle as usize];
+        let squares = corners.map(|corner| closest_in_triangle(corner.point, triangle).0);
+        squares.into_iter().fold(0.0, f64::max).sqrt()
     }
 
     /// Halves a piece again and again.
-    fn halve(&self, piece: Piece, mut lower: Lower) -> Halved {
-        let mut stack = vec![piece];
-        let mut result = Halved { pieces: Vec::new(), lower, settled: 0.0, queries: 0 };
-        while let Some(piece) = stack.pop() {
-            if piece.upper <= lower.distance + self.tolerance {
-                result.settled = result.settled.max(piece.upper);
+    fn halve(&self, piece: Piece, lower: Lower) -> Findings {
+        let mut found = Findings { pieces: vec![piece], lower, ..Findings::default() };
+        let mut rest = Vec::new();
+        while let Some(piece) = found.pieces.pop() {
+            if piece.upper <= found.lower.distance + self.tolerance {
+                found.settled = found.settled.max(piece.upper);
                 continue;
             }
-            if result.queries >= HALVINGS {
-                result.pieces.push(piece);
+            if found.queries >= HALVINGS {
+                rest.push(piece);
                 continue;
             }
             let [a, b, c] = piece.corners.map(|probe| probe.point);
@@ -339,13 +337,13 @@ impl Search<'_> {
             let k = (0..3).fold(0, |best, i| if sides[i] > sides[best] { i } else { best });
             let [apex, from, to] = [0, 1, 2].map(|i| piece.corners[(k + i) % 3]);
             let middle = self.probe(0.5 * (from.point + to.point), Some(from.triangle as usize));
-            result.queries += 1;
-            lower.raise(middle, piece.source);
-            stack.push(self.piece([apex, from, middle], piece.upper, piece.source));
-            stack.push(self.piece([apex, middle, to], piece.upper, piece.source));
+            found.queries += 1;
+            found.lower.raise(middle, piece.source);
+            self.settle([apex, from, middle], piece.upper, piece.source, &mut found);
+            self.settle([apex, middle, to], piece.upper, piece.source, &mut found);
         }
-        result.lower = lower;
-        result
+        found.pieces = rest;
+        found
     }
 
     fn bounds(&self, lower: &Lower, upper: f64, queries: usize) -> HausdorffBounds {
@@ -367,12 +365,30 @@ impl Search<'_> {
     }
 }
 
-/// What came of halving a piece.
-struct Halved {
+/// What came of looking at pieces: those that are left, the largest upper bound of the others.
+#[derive(Default)]
+struct Findings {
     pieces: Vec<Piece>,
     lower: Lower,
     settled: f64,
     queries: usize,
+}
+
+impl Findings {
+    fn absorb(&mut self, other: Findings) {
+        self.queries += other.queries;
+        self.settled = self.settled.max(other.settled);
+        if other.lower.distance > self.lower.distance {
+            self.lower = other.lower;
+        }
+        self.pieces.extend(other.pieces);
+    }
+}
+
+impl Default for Lower {
+    fn default() -> Self {
+        Lower { distance: -1.0, probe: Probe::NONE, source: 0 }
+    }
 }
 
 impl Probe {

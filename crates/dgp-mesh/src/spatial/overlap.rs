@@ -47,16 +47,22 @@ impl TriangleTree {
     pub fn faces_within(&self, p: DVec3, radius: f64) -> Vec<FaceId> {
         let mut faces = Vec::new();
         let Some(q) = self.query(p).filter(|_| radius >= 0.0) else { return faces };
-        if q != self.nodes.frame.scaled(p) {
-            // From so far away all of the surface is at one distance.
-            let is_near = self.closest_point(p).is_some_and(|hit| hit.distance <= radius);
-            faces.extend(is_near.then_some(&self.faces).into_iter().flatten());
+        let given = radius;
+        let radius = radius * self.nodes.frame.scale.down;
+        let square = radius * radius;
+        let actual = self.nodes.frame.scaled(p);
+        if q != actual {
+            // Moved nearer, so all triangles are looked at, or only the nearest where squares overflow.
+            let near = |&i: &usize| closest_in_triangle(actual, &self.triangles[i]).0 <= square;
+            let all = (0..self.len()).filter(|i| square.is_finite() && near(i));
+            faces.extend(all.map(|i| self.faces[i]));
+            if square.is_infinite() && self.closest_point(p).is_some_and(|hit| hit.distance <= given) {
+                faces.clone_from(&self.faces);
+            }
             faces.sort_unstable();
             faces.dedup();
             return faces;
         }
-        let radius = radius * self.nodes.frame.scale.down;
-        let square = radius * radius;
         self.nodes.near(q, square, |items| {
             let near = |&i: &usize| closest_in_triangle(q, &self.triangles[i]).0 <= square;
             faces.extend(items.filter(near).map(|i| self.faces[i]));

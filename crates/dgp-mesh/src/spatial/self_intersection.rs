@@ -153,8 +153,7 @@ fn meets_in_plane([p, q]: [DVec3; 2], t: &[DVec3; 3]) -> bool {
     within(p) || within(q) || sides(t).any(|side| segments_meet(plane, [p, q], side))
 }
 
-/// Whether two segments that are not both in one line meet, seen in a plane. Where they are in one line,
-/// an end of one lies in the triangle that the other is a side of, or of it in the other.
+/// Whether two segments in a plane meet.
 fn segments_meet(plane: Plane, [p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> bool {
     let across = turn(plane, [a, b], p) * turn(plane, [a, b], q);
     let along = turn(plane, [p, q], a) * turn(plane, [p, q], b);

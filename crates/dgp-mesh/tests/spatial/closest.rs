@@ -3,17 +3,13 @@
 use std::ops::ControlFlow;
 
 use dgp_mesh::{
-    DVec3, Error, IndexedFaceSet, Progress, TriangulationMethod, VertexId,
+    DVec3, Error, IndexedFaceSet, Progress, VertexId,
+    measure::BoundingBox,
     shapes::{self, Random},
     spatial::TriangleTree,
-    triangulate_faces,
 };
 
-use super::{faces, probes, random_point, surfaces};
-
-fn tree(set: &IndexedFaceSet) -> TriangleTree {
-    TriangleTree::new(set, Progress::NONE).unwrap()
-}
+use super::{faces, probes, random_point, surfaces, tree, triangles};
 
 /// The squared distance from `p` to a triangle by projection on its plane and its sides.
 fn square_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
@@ -33,9 +29,8 @@ fn square_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
 }
 
 fn brute_force(set: &IndexedFaceSet, p: DVec3) -> f64 {
-    let (set, _) = triangulate_faces(set, TriangulationMethod::Ears, Progress::NONE).unwrap();
-    let triangles = set.faces().iter().map(|(_, face)| [0, 1, 2].map(|k| set.position(face[k])));
-    triangles.map(|t| square_to_triangle(p, t)).fold(f64::INFINITY, f64::min).sqrt()
+    let squares = triangles(set).into_iter().map(|(t, _)| square_to_triangle(p, t));
+    squares.fold(f64::INFINITY, f64::min).sqrt()
 }
 
 #[test]
@@ -152,4 +147,75 @@ fn equal_centers_and_coplanar_grids_are_fine() {
     let tree = TriangleTree::new(&grid, Progress::NONE).unwrap();
     let hit = tree.closest_point(DVec3::new(0.3, 0.4, -2.0)).unwrap();
     assert_eq!(hit.distance, 2.0);
+}
+
+#[test]
+fn faces_near_a_point_are_those_of_looking_at_all() {
+    for (name, set) in surfaces() {
+        let (tree, all) = (tree(&set), triangles(&set));
+        for p in probes(&set, 12) {
+            let mut near: Vec<_> =
+                all.iter().map(|&(t, f)| (square_to_triangle(p, t).sqrt(), f)).collect();
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut seen = Vec::new();
+            near.retain(|&(_, f)| !seen.contains(&f) && { seen.push(f); true });
+            let found = tree.nearest_faces(p, 5);
+            assert_eq!(found.len(), near.len().min(5), "{name} {p}");
+            for (hit, right) in found.iter().zip(&near) {
+                let tolerance = 1e-12 * (p.length() + 10.0);
+                assert!((hit.distance - right.0).abs() < tolerance, "{name} {p}: {found:?}");
+            }
+            // A radius between two distances.
+            let k = near.len() / 2;
+            let radius = if k + 1 < near.len() { 0.5 * (near[k].0 + near[k + 1].0) } else { 1e300 };
+            let gap = near.iter().map(|x| (x.0 - radius).abs()).fold(f64::INFINITY, f64::min);
+            if gap > 1e-9 * (1.0 + p.length()) {
+                let mut right: Vec<_> =
+                    near.iter().filter(|x| x.0 <= radius).map(|x| x.1).collect();
+                right.sort_unstable();
+                assert_eq!(tree.faces_within(p, radius), right, "{name} {p} {radius}");
+            }
+        }
+    }
+}
+
+#[test]
+fn faces_in_a_box_have_points_in_it() {
+    for (name, set) in surfaces() {
+        let (tree, all) = (tree(&set), triangles(&set));
+        let mut random = Random::new(9);
+        for _ in 0..40 {
+            let (a, b) = (1.5 * random_point(&mut random), 1.5 * random_point(&mut random));
+            let query = BoundingBox { min: a.min(b), max: a.max(b) };
+            let mut right: Vec<_> =
+                all.iter().filter(|(t, _)| clipped(t, &query)).map(|x| x.1).collect();
+            right.sort_unstable();
+            right.dedup();
+            assert_eq!(tree.faces_in_box(&query), right, "{name} {query:?}");
+        }
+    }
+}
+
+/// Whether something of a triangle is left when the six sides of a box have cut off what is outside.
+fn clipped(triangle: &[DVec3; 3], query: &BoundingBox) -> bool {
+    let mut polygon = triangle.to_vec();
+    for axis in 0..3 {
+        for (sign, bound) in [(1.0, query.max[axis]), (-1.0, -query.min[axis])] {
+            let out = |p: DVec3| sign * p[axis] - bound;
+            let mut rest = Vec::new();
+            for (i, &p) in polygon.iter().enumerate() {
+                let q = polygon[(i + 1) % polygon.len()];
+                if out(p) <= 0.0 {
+                    rest.push(p);
+                }
+                if out(p) * out(q) < 0.0 {
+                    let mut cut = p + (q - p) * (out(p) / (out(p) - out(q)));
+                    cut[axis] = sign * bound;
+                    rest.push(cut);
+                }
+            }
+            polygon = rest;
+        }
+    }
+    !polygon.is_empty()
 }

@@ -1,10 +1,17 @@
 //! Spatial queries against looking at everything.
 
 mod closest;
+mod distances;
+mod inside;
+mod intersections;
+mod rays;
 
 use dgp_mesh::{
-    DVec3, FaceList, IndexedFaceSet,
+    DVec3, FaceId, FaceList, IndexedFaceSet, Progress, TriangulationMethod,
+    measure::Surface,
     shapes::{self, Random},
+    spatial::TriangleTree,
+    triangulate_faces,
 };
 
 /// Face sets of every kind: meshes, triangles at random, and what has no area.
@@ -83,4 +90,18 @@ fn probes(set: &IndexedFaceSet, count: usize) -> Vec<DVec3> {
 fn random_point(random: &mut Random) -> DVec3 {
     let mut x = || 2.0 * random.uniform() - 1.0;
     DVec3::new(x(), x(), x())
+}
+
+/// The corners of all triangles, and the face of each.
+fn triangles(set: &IndexedFaceSet) -> Vec<([DVec3; 3], FaceId)> {
+    let (cut, sources) =
+        triangulate_faces(set, TriangulationMethod::Ears, Progress::NONE).unwrap();
+    let corners = cut.faces().iter().map(|(f, face)| {
+        ([0, 1, 2].map(|k| cut.position(face[k])), sources[f])
+    });
+    corners.collect()
+}
+
+fn tree(surface: &impl Surface) -> TriangleTree {
+    TriangleTree::new(surface, Progress::NONE).unwrap()
 }
