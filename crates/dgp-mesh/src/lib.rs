@@ -12,7 +12,7 @@
 //! | what mends it | [`repair`](repair()), [`repair_faces`], [`RepairOptions`] |
 //! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
 //! | triangles from polygons | [`triangulate()`] [`triangulate_faces`] [`triangulate_polygon`] |
-//! | nearest points | [`spatial`]: a hierarchy over the triangles of any surface |
+//! | where things are | [`spatial`]: nearest points, rays, inside and outside, distances of surfaces |
 //! | edits | [`Editor`], [`reorder`], [`Mesh::reverse`], [`Mesh::validate`] |
 //! | search | [`graph`]: breadth-first, Dijkstra, A*, adjacency lists |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |

@@ -29,8 +29,8 @@ pub struct WindingOptions {
     /// β: triangles within a ball of radius r count as one where the point is further than β r from its
     /// center. At least 1.
     ///
-    /// Largest errors measured over points in the box around a noisy sphere, a torus and a soup: see
-    /// docs/book/spatial.md; the error falls by about 2³ when β doubles.
+    /// The largest errors measured over points in a cube around a noisy sphere with holes and a soup of
+    /// some thousand triangles: 8e-3 for 1.5, 2e-3 for 2, 1e-4 for 4, 4e-6 for 8.
     pub accuracy: f64,
 }
 
