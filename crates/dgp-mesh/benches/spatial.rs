@@ -40,9 +40,15 @@ fn spatial(c: &mut Criterion) {
         bench(c, "tree_build", n, || TriangleTree::new(&mesh, Progress::NONE));
         let tree = TriangleTree::new(&mesh, Progress::NONE).expect("finite");
         for (name, points) in [("box", points_in_box()), ("near", points_near())] {
-            bench(c, &format!("closest_{name}"), n, || tree.closest_points(&points, Progress::NONE));
+            bench(c, &format!("closest_{name}"), n, || {
+                tree.closest_points(&points, Progress::NONE)
+            });
             bench(c, &format!("closest_{name}_one_by_one"), n, || {
-                points.iter().filter_map(|&p| tree.closest_point(p)).map(|x| x.distance).sum::<f64>()
+                points
+                    .iter()
+                    .filter_map(|&p| tree.closest_point(p))
+                    .map(|x| x.distance)
+                    .sum::<f64>()
             });
         }
     }

@@ -135,9 +135,7 @@ pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<(
         "self-intersections" => {
             let moved = input.moved();
             // As CGAL does, hierarchy included.
-            run(&mut || {
-                Ok(built(&moved)?.self_intersections(Progress::NONE)?.len() as f64)
-            })?;
+            run(&mut || Ok(built(&moved)?.self_intersections(Progress::NONE)?.len() as f64))?;
         }
         "hausdorff" => {
             let moved = input.moved();

@@ -60,11 +60,8 @@ fn judge(operation: &str, tolerance: f64, ours: &Value, theirs: &Value) -> Compa
     // For Hausdorff distances both intervals are as long as the bound.
     let scale = if operation == "hausdorff" { number(ours, "bound") } else { a.abs().max(b.abs()) };
     let off = if a == b { 0.0 } else { (a - b).abs() / scale };
-    let verdict = if off <= tolerance {
-        Verdict::Same
-    } else {
-        Verdict::Differs(format!("{a} and {b}"))
-    };
+    let verdict =
+        if off <= tolerance { Verdict::Same } else { Verdict::Differs(format!("{a} and {b}")) };
     let quantity = operation.replace('-', "_");
     Comparison { quantity, compared: 1, left_out: 0, worst: off, verdict }
 }

@@ -11,7 +11,9 @@ use dgp::{
             HausdorffReport, TriangleTree, chamfer, deviation, hausdorff,
         },
     },
-    view::{ColorMap, Field, Model, Paint, Panel, RenderOptions, Scalars, Scene, Shape, Style, render},
+    view::{
+        ColorMap, Field, Model, Paint, Panel, RenderOptions, Scalars, Scene, Shape, Style, render,
+    },
 };
 use serde_json::{Value, json};
 
@@ -80,13 +82,13 @@ impl Compare {
             built.map_err(|failure| failure.in_file(path))
         };
         let trees = [tree(&one.set, &self.first)?, tree(&two.set, &self.second)?];
-        let measured = session.run("measuring", |progress| {
-            self.measure([&one.set, &two.set], &trees, progress)
-        })?;
+        let measured = session
+            .run("measuring", |progress| self.measure([&one.set, &two.set], &trees, progress))?;
         if !measured.hausdorff.forward.is_within_tolerance
             || !measured.hausdorff.backward.is_within_tolerance
         {
-            session.warn("the bounds are further apart than --tolerance; raise --queries".to_owned());
+            session
+                .warn("the bounds are further apart than --tolerance; raise --queries".to_owned());
         }
         let values: VertexMap<f64> = measured.distances.clone().into();
         if let Some(path) = &self.picture {
@@ -136,10 +138,8 @@ fn draw(
     values: &VertexMap<f64>,
     progress: Progress<'_>,
 ) -> Result<Vec<u8>, dgp::view::Error> {
-    let scalars = Scalars {
-        label: DISTANCE.to_owned(),
-        ..Scalars::new(Field::Vertices(values.clone()))
-    };
+    let scalars =
+        Scalars { label: DISTANCE.to_owned(), ..Scalars::new(Field::Vertices(values.clone())) };
     let style = Style { paint: Paint::Scalars(scalars), ..Style::default() };
     let model = Model { style, ..Model::new(Shape::Faces(set)) };
     let scene = Scene { panels: vec![Panel::new("", model)] };

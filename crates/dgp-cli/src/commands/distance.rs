@@ -89,8 +89,15 @@ impl Distance {
 
         if let Some(path) = &self.csv {
             let names = [
-                "x", "y", "z", "distance", "winding_number", "nearest_x", "nearest_y",
-                "nearest_z", "nearest_face",
+                "x",
+                "y",
+                "z",
+                "distance",
+                "winding_number",
+                "nearest_x",
+                "nearest_y",
+                "nearest_z",
+                "nearest_face",
             ];
             let row = |i: usize| {
                 let (p, (nearest, face)) = (points[i], found.nearest[i]);

@@ -23,8 +23,7 @@ fn sphere(radius: f64) -> String {
 #[test]
 fn two_spheres_are_as_far_apart_as_their_radii() {
     let dgp = Dgp::new(&[("a.off", &sphere(1.0)), ("b.off", &sphere(1.1)), ("fin.off", FIN)]);
-    let (code, value) =
-        dgp.json("compare a.off b.off -o d.ply --picture d.png --tolerance 1e-3");
+    let (code, value) = dgp.json("compare a.off b.off -o d.ply --picture d.png --tolerance 1e-3");
     assert_eq!(code, 0, "{value}");
     let hausdorff = &value["report"]["hausdorff"];
     let (lower, upper) = (number(&hausdorff["lower"]), number(&hausdorff["upper"]));
@@ -52,7 +51,8 @@ fn points_know_whether_they_are_inside_a_cube() {
     let points = "0.5 0.5 0.5\n0.5 0.5 1.5\n2 0.5 0.5\n0.25 0.5 0.5\n";
     let dgp = Dgp::new(&[("cube.off", CUBE), ("p.xyz", points)]);
     for sign in ["winding", "normal"] {
-        let command = format!("distance cube.off --points p.xyz --sign {sign} --csv d.csv -o d.ply");
+        let command =
+            format!("distance cube.off --points p.xyz --sign {sign} --csv d.csv -o d.ply");
         let (code, value) = dgp.json(&command);
         assert_eq!((code, &value["report"]["inside"]), (0, &2.into()), "{value}");
         let text = fs::read_to_string(dgp.folder().join("d.csv")).unwrap();
@@ -69,7 +69,10 @@ fn points_know_whether_they_are_inside_a_cube() {
         }
     }
     let (code, value) = dgp.json("distance cube.off --grid 7 --sign none -o g.ply");
-    assert_eq!((code, &value["report"]["points"], &value["report"]["inside"]), (0, &343.into(), &0.into()));
+    assert_eq!(
+        (code, &value["report"]["points"], &value["report"]["inside"]),
+        (0, &343.into(), &0.into())
+    );
     for (command, code) in [
         ("distance cube.off", 2),
         ("distance cube.off --grid 1", 2),

@@ -79,8 +79,8 @@ impl Bounds {
 #[inline]
 fn center(item: &Item) -> [f32; 4] {
     let mut sum = [0.0; 4];
-    for i in 0..4 {
-        sum[i] = item.lo[i] + item.hi[i];
+    for (i, sum) in sum.iter_mut().enumerate() {
+        *sum = item.lo[i] + item.hi[i];
     }
     sum
 }

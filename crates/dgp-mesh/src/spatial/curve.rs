@@ -25,10 +25,8 @@ pub(super) fn key(local: [f64; 3]) -> u32 {
 
 /// The keys of `0..len` in order, and the number of each; equal ones in order of their numbers.
 pub(super) fn sorted(len: usize, key: impl Fn(usize) -> u32 + Sync + Send) -> Vec<(u32, u32)> {
-    let mut keys: Vec<(u32, u32)> = parallel::map(len, |i: crate::VertexId| {
-        (key(i.index()), i.index() as u32)
-    })
-    .into_values();
+    let mut keys: Vec<(u32, u32)> =
+        parallel::map(len, |i: crate::VertexId| (key(i.index()), i.index() as u32)).into_values();
     let mut sorted = keys.clone();
     for shift in (0..3 * BITS).step_by(DIGIT as usize) {
         let digit = |key: u32| (key >> shift & ((1 << DIGIT) - 1)) as usize;

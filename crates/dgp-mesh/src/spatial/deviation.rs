@@ -88,7 +88,9 @@ pub fn deviation(
             }
             sums
         });
-        blocks.iter().for_each(|block| total.join(block));
+        for block in &blocks {
+            total.join(block);
+        }
     }
     progress.report(1.0)?;
     let up = to.nodes.frame.scale.up;

@@ -19,12 +19,13 @@ pub(super) struct Frame {
 impl Frame {
     /// The frame of what has this bounding box.
     pub(super) fn of(bounds: Option<BoundingBox>) -> Self {
+        /// Sizes that vanish beside the coordinates count as a little of those, or scaling would make
+        /// them overflow.
+        const LEAST: f64 = 1.0 / (1_u64 << 60) as f64;
         let Some(bounds) = bounds else {
             return Frame { scale: Scale::of(0.0), center: DVec3::ZERO };
         };
-        // Half the size cannot overflow, the size can. Sizes that vanish beside the coordinates count
-        // as a little of those, or scaling would make them overflow.
-        const LEAST: f64 = 1.0 / (1_u64 << 60) as f64;
+        // Half the size cannot overflow, the size can.
         let half = 0.5 * bounds.max - 0.5 * bounds.min;
         let largest = bounds.max.abs().max(bounds.min.abs()).max_element();
         let scale = Scale::of(half.max_element().max(LEAST * largest));

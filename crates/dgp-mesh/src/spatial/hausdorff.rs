@@ -31,7 +31,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::{TriangleTree, closest_point::{Nearest, closest_in_triangle}};
+use super::{
+    TriangleTree,
+    closest_point::{Nearest, closest_in_triangle},
+};
 use crate::{Error, FaceId, Progress, parallel};
 
 /// Choices of [`hausdorff`].
@@ -127,7 +130,11 @@ pub fn one_sided_hausdorff(
     let half = (0.5 * both.max - 0.5 * both.min) * frame.scale.down;
     let size = both.max.abs().max(both.min.abs()).max_element() * frame.scale.down;
     if !half.is_finite() || !size.is_finite() {
-        return Err(Error::option("tolerance", options.tolerance, "used on surfaces of comparable size"));
+        return Err(Error::option(
+            "tolerance",
+            options.tolerance,
+            "used on surfaces of comparable size",
+        ));
     }
     let search = Search {
         from,
@@ -202,7 +209,9 @@ impl Search<'_> {
             }
             found
         });
-        blocks.into_iter().for_each(|found| all.absorb(found));
+        for found in blocks {
+            all.absorb(found);
+        }
 
         let mut open = f64::INFINITY;
         while all.queries < budget {
@@ -232,7 +241,9 @@ impl Search<'_> {
                 let halved = range.map(|i| self.halve(highest[i], all.lower));
                 halved.collect::<Vec<_>>()
             });
-            blocks.into_iter().flatten().for_each(|found| all.absorb(found));
+            for found in blocks.into_iter().flatten() {
+                all.absorb(found);
+            }
         }
         progress.report(1.0)?;
         let open = all.pieces.iter().map(|piece| piece.upper).fold(0.0, f64::max);
@@ -333,7 +344,8 @@ impl Search<'_> {
                 continue;
             }
             let [a, b, c] = piece.corners.map(|probe| probe.point);
-            let sides = [(c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared()];
+            let sides =
+                [(c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared()];
             let k = (0..3).fold(0, |best, i| if sides[i] > sides[best] { i } else { best });
             let [apex, from, to] = [0, 1, 2].map(|i| piece.corners[(k + i) % 3]);
             let middle = self.probe(0.5 * (from.point + to.point), Some(from.triangle as usize));
@@ -398,8 +410,5 @@ impl Probe {
 /// The largest bound first; of equal ones in an order that threads cannot change.
 fn by_upper(a: &Piece, b: &Piece) -> Ordering {
     let place = |piece: &Piece| piece.corners.map(|probe| probe.point.to_array().map(f64::to_bits));
-    b.upper
-        .total_cmp(&a.upper)
-        .then(a.source.cmp(&b.source))
-        .then_with(|| place(a).cmp(&place(b)))
+    b.upper.total_cmp(&a.upper).then(a.source.cmp(&b.source)).then_with(|| place(a).cmp(&place(b)))
 }

@@ -75,12 +75,12 @@ impl Target for Near {
     fn distances(&self, node: &Node) -> [f32; WIDTH] {
         let mut sum = [0.0; WIDTH];
         for axis in 0..3 {
-            for i in 0..WIDTH {
+            for (i, sum) in sum.iter_mut().enumerate() {
                 let before = node.lo[axis][i] - self.hi[axis];
                 let behind = self.lo[axis] - node.hi[axis][i];
                 let out = if before > behind { before } else { behind };
                 let out = if out > 0.0 { out } else { 0.0 };
-                sum[i] += out * out;
+                *sum += out * out;
             }
         }
         sum
@@ -197,8 +197,7 @@ impl Nodes {
             let node = &self.nodes[first as usize];
             let distances = target.distances(node);
             let bottom = waiting;
-            for i in 0..WIDTH {
-                let distance = distances[i];
+            for (i, distance) in distances.into_iter().enumerate() {
                 if distance > limit || !node.has(i) {
                     continue;
                 }
@@ -269,21 +268,20 @@ impl Nodes {
             let node = &self.nodes[stack[waiting] as usize];
             let mut meets = [true; WIDTH];
             for axis in 0..3 {
-                for i in 0..WIDTH {
-                    meets[i] &= (node.lo[axis][i] <= hi[axis]) & (lo[axis] <= node.hi[axis][i]);
+                for (i, meets) in meets.iter_mut().enumerate() {
+                    // Both sides are looked at, so that there is no branch.
+                    let apart = [node.lo[axis][i] > hi[axis], lo[axis] > node.hi[axis][i]];
+                    *meets &= apart == [false; 2];
                 }
             }
             for i in (0..WIDTH).filter(|&i| meets[i]) {
-                match node.leaf(i) {
-                    Some(items) => {
-                        if !visit(items) {
-                            return;
-                        }
+                if let Some(items) = node.leaf(i) {
+                    if !visit(items) {
+                        return;
                     }
-                    None => {
-                        stack[waiting] = node.first[i];
-                        waiting += 1;
-                    }
+                } else {
+                    stack[waiting] = node.first[i];
+                    waiting += 1;
                 }
             }
         }

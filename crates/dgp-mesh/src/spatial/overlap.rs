@@ -56,7 +56,9 @@ impl TriangleTree {
             let near = |&i: &usize| closest_in_triangle(actual, &self.triangles[i]).0 <= square;
             let all = (0..self.len()).filter(|i| square.is_finite() && near(i));
             faces.extend(all.map(|i| self.faces[i]));
-            if square.is_infinite() && self.closest_point(p).is_some_and(|hit| hit.distance <= given) {
+            if square.is_infinite()
+                && self.closest_point(p).is_some_and(|hit| hit.distance <= given)
+            {
                 faces.clone_from(&self.faces);
             }
             faces.sort_unstable();
@@ -117,10 +119,8 @@ fn meets_box(corners: [DVec3; 3], half: DVec3) -> bool {
             let across = axis.cross(edge);
             let shadow = corners.map(|p| across.dot(p));
             let reach = across.abs().dot(half);
-            let (lo, hi) = (
-                shadow[0].min(shadow[1]).min(shadow[2]),
-                shadow[0].max(shadow[1]).max(shadow[2]),
-            );
+            let (lo, hi) =
+                (shadow[0].min(shadow[1]).min(shadow[2]), shadow[0].max(shadow[1]).max(shadow[2]));
             if lo > reach || hi < -reach {
                 return false;
             }

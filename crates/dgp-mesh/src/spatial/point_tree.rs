@@ -19,7 +19,11 @@ use super::{
     frame::Frame,
     nodes::Nodes,
 };
-use crate::{Error, Progress, VertexId, measure::{BoundingBox, scale}, parallel};
+use crate::{
+    Error, Progress, VertexId,
+    measure::{BoundingBox, scale},
+    parallel,
+};
 
 /// Points ordered so that those near a place are found fast. Points are known by their number.
 #[derive(Clone, Debug)]

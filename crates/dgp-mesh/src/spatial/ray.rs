@@ -102,8 +102,7 @@ impl TriangleTree {
             for hit in items.filter_map(|i| self.hit(&sheared, i)) {
                 let is_better = best.is_none_or(|best| {
                     hit.t < best.t
-                        || (hit.t == best.t
-                            && self.faces[hit.triangle] < self.faces[best.triangle])
+                        || (hit.t == best.t && self.faces[hit.triangle] < self.faces[best.triangle])
                 });
                 if is_better {
                     best = Some(hit);
@@ -209,9 +208,8 @@ impl TriangleTree {
         }
         let beam = beam(local + start * direction, direction, loss);
 
-        let longest = (0..3).fold(0, |best, i| {
-            if direction[i].abs() > direction[best].abs() { i } else { best }
-        });
+        let longest = (0..3)
+            .fold(0, |best, i| if direction[i].abs() > direction[best].abs() { i } else { best });
         let [mut x, mut y, z] = [(longest + 1) % 3, (longest + 2) % 3, longest];
         // Keeps the sense of rotation.
         if direction[z] < 0.0 {

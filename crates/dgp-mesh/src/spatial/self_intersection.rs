@@ -157,11 +157,14 @@ fn meets_in_plane([p, q]: [DVec3; 2], t: &[DVec3; 3]) -> bool {
 fn segments_meet(plane: Plane, [p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> bool {
     let across = turn(plane, [a, b], p) * turn(plane, [a, b], q);
     let along = turn(plane, [p, q], a) * turn(plane, [p, q], b);
-    across <= 0.0 && along <= 0.0 && (across < 0.0 || along < 0.0 || {
-        let [p, q, a, b] = [p, q, a, b].map(|x| plane.view(x));
-        let spans = |p: f64, q: f64, a: f64, b: f64| p.max(q) >= a.min(b) && a.max(b) >= p.min(q);
-        spans(p.x, q.x, a.x, b.x) && spans(p.y, q.y, a.y, b.y)
-    })
+    across <= 0.0
+        && along <= 0.0
+        && (across < 0.0 || along < 0.0 || {
+            let [p, q, a, b] = [p, q, a, b].map(|x| plane.view(x));
+            let spans =
+                |p: f64, q: f64, a: f64, b: f64| p.max(q) >= a.min(b) && a.max(b) >= p.min(q);
+            spans(p.x, q.x, a.x, b.x) && spans(p.y, q.y, a.y, b.y)
+        })
 }
 
 /// The two coordinates that are looked at.

@@ -51,16 +51,16 @@ impl TriangleTree {
         let bounds = bounds_of(positions, &list)?;
         let frame = Frame::of(bounds);
         progress.report(0.1)?;
-        let mut items = gather(list.len(), |i| {
-            item(&frame, i, list[i as usize].map(|v| positions[v.index()]))
-        });
+        let mut items =
+            gather(list.len(), |i| item(&frame, i, list[i as usize].map(|v| positions[v.index()])));
         progress.report(0.2)?;
         let nodes = build(&mut items);
         progress.report(0.8)?;
         let leaves = |i: u32| items[i as usize].id as usize;
         let vertices = gather(items.len(), |i| list[leaves(i)]);
-        let triangles =
-            gather(items.len(), |i| vertices[i as usize].map(|v| frame.scaled(positions[v.index()])));
+        let triangles = gather(items.len(), |i| {
+            vertices[i as usize].map(|v| frame.scaled(positions[v.index()]))
+        });
         let faces = gather(items.len(), |i| match &sources {
             Some(sources) => sources[leaves(i)],
             None => FaceId::new(leaves(i)),

@@ -224,9 +224,9 @@ impl Sums {
 
     fn moments(&self, accuracy: f64) -> Moments {
         let (m, t) = (&self.first, &self.second);
-        let second = DVec3::from_array([0, 1, 2].map(|i| {
-            (0..3).map(|k| 0.5 * (t[i][k][k] + 2.0 * t[k][k][i])).sum::<f64>()
-        }));
+        let second = DVec3::from_array(
+            [0, 1, 2].map(|i| (0..3).map(|k| 0.5 * (t[i][k][k] + 2.0 * t[k][k][i])).sum::<f64>()),
+        );
         let three = |i: usize, j: usize| 0.5 * (2.0 * t[i][i][j] + t[j][i][i]);
         let six = t[0][1][2] + t[1][0][2] + t[2][0][1];
         // The radius of a part may be larger than that of the box; a little more covers rounding.
@@ -267,8 +267,7 @@ fn gathered(tree: &TriangleTree) -> Vec<Sums> {
     let blocks = parallel::map_blocks(nodes.len(), parallel::BLOCK, |range| {
         let of_node = |index: usize| {
             let items = (0..WIDTH).filter_map(|i| nodes[index].leaf(i)).flatten();
-            let parts: Vec<Sums> =
-                items.map(|i| Sums::of_triangle(&tree.triangles[i])).collect();
+            let parts: Vec<Sums> = items.map(|i| Sums::of_triangle(&tree.triangles[i])).collect();
             if parts.is_empty() { Sums::ZERO } else { Sums::of_parts(&parts) }
         };
         range.map(of_node).collect::<Vec<Sums>>()
@@ -309,8 +308,7 @@ impl Moments {
             + y * y * (c[1] * y + c[5] * x + c[6] * z)
             + z * z * (c[2] * z + c[7] * x + c[8] * y)
             + c[9] * x * y * z;
-        third * (self.area.dot(r) + m0 + m1 + m2)
-            - 3.0 * fifth * (quadratic + self.second.dot(r))
+        third * (self.area.dot(r) + m0 + m1 + m2) - 3.0 * fifth * (quadratic + self.second.dot(r))
             + 15.0 * seventh * cubic
     }
 }

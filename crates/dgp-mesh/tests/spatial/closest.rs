@@ -43,10 +43,16 @@ fn the_nearest_point_is_as_near_as_looking_at_all_triangles_says() {
             let tolerance = 1e-13 * (p.length() + 10.0) + 1e-12 * right;
             assert!((hit.distance - right).abs() < tolerance, "{name} {p}: {hit:?}, not {right}");
             let [x, y, z] = hit.barycentric;
-            assert!(x.min(y).min(z) >= -1e-15 && (x + y + z - 1.0).abs() < 1e-15, "{name}: {hit:?}");
+            assert!(
+                x.min(y).min(z) >= -1e-15 && (x + y + z - 1.0).abs() < 1e-15,
+                "{name}: {hit:?}"
+            );
             let corners = hit.vertices.map(|v| set.position(v));
             let point = x * corners[0] + y * corners[1] + z * corners[2];
-            assert!((point - hit.point).length() < 1e-13 * (1.0 + point.length()), "{name}: {hit:?}");
+            assert!(
+                (point - hit.point).length() < 1e-13 * (1.0 + point.length()),
+                "{name}: {hit:?}"
+            );
             assert!(hit.vertices.iter().all(|v| set.faces().face(hit.face).contains(v)), "{name}");
         }
     }
@@ -158,7 +164,12 @@ fn faces_near_a_point_are_those_of_looking_at_all() {
                 all.iter().map(|&(t, f)| (square_to_triangle(p, t).sqrt(), f)).collect();
             near.sort_by(|a, b| a.0.total_cmp(&b.0));
             let mut seen = Vec::new();
-            near.retain(|&(_, f)| !seen.contains(&f) && { seen.push(f); true });
+            near.retain(|&(_, f)| {
+                !seen.contains(&f) && {
+                    seen.push(f);
+                    true
+                }
+            });
             let found = tree.nearest_faces(p, 5);
             assert_eq!(found.len(), near.len().min(5), "{name} {p}");
             for (hit, right) in found.iter().zip(&near) {

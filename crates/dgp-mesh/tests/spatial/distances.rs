@@ -13,8 +13,7 @@ use super::{faces, random_point, tree};
 
 fn bounds(a: &IndexedFaceSet, b: &IndexedFaceSet) -> (f64, f64) {
     let options = HausdorffOptions { tolerance: 1e-6, ..HausdorffOptions::default() };
-    let found =
-        one_sided_hausdorff(&tree(a), &tree(b), &options, Progress::NONE).unwrap();
+    let found = one_sided_hausdorff(&tree(a), &tree(b), &options, Progress::NONE).unwrap();
     assert!(found.is_within_tolerance && found.lower <= found.upper, "{found:?}");
     let distance = tree(b).closest_point(found.point).unwrap();
     assert!((distance.distance - found.lower).abs() < 1e-13, "{found:?}, but {distance:?}");
@@ -34,7 +33,10 @@ fn distances_that_can_be_worked_out_lie_between_the_bounds() {
     let side = tree(&cube).bounding_box().unwrap().size().x;
     let far = moved(&cube, |p| p + DVec3::new(0.0, 0.0, 0.25 * side));
     let (lower, upper) = bounds(&cube, &far);
-    assert!(lower <= 0.25 * side && 0.25 * side <= upper && upper - lower < 1e-5, "{lower} {upper}");
+    assert!(
+        lower <= 0.25 * side && 0.25 * side <= upper && upper - lower < 1e-5,
+        "{lower} {upper}"
+    );
     let (lower, upper) = bounds(&cube, &cube);
     assert!(lower == 0.0 && upper < 1e-13, "{lower} {upper}");
 
@@ -45,7 +47,14 @@ fn distances_that_can_be_worked_out_lie_between_the_bounds() {
         &[[0, 1, 2], [0, 2, 3]],
     );
     let valley = faces(
-        vec![p(-1.0, -1.0, 1.0), p(0.0, -1.0, 0.0), p(1.0, -1.0, 1.0), p(-1.0, 1.0, 1.0), p(0.0, 1.0, 0.0), p(1.0, 1.0, 1.0)],
+        vec![
+            p(-1.0, -1.0, 1.0),
+            p(0.0, -1.0, 0.0),
+            p(1.0, -1.0, 1.0),
+            p(-1.0, 1.0, 1.0),
+            p(0.0, 1.0, 0.0),
+            p(1.0, 1.0, 1.0),
+        ],
         &[[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]],
     );
     // Over the bottom of the valley the walls are at 1/√2.

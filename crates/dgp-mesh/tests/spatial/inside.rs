@@ -11,7 +11,11 @@ use super::{random_point, soup, tree};
 #[test]
 fn closed_surfaces_wind_once_or_not_at_all() {
     // ORACLES.md, row 28: 0 or 1 to 1e-12.
-    for mesh in [shapes::cube(), shapes::icosphere(4).unwrap(), shapes::quad_torus(2.0, 0.7, 40, 20).unwrap()] {
+    for mesh in [
+        shapes::cube(),
+        shapes::icosphere(4).unwrap(),
+        shapes::quad_torus(2.0, 0.7, 40, 20).unwrap(),
+    ] {
         let tree = tree(&mesh);
         let fast = WindingNumbers::new(&tree, WindingOptions::default()).unwrap();
         let signed = SignedDistances::new(&tree);

@@ -21,8 +21,10 @@ fn neighbors_on_a_surface_do_not_count() {
     }
     // Nor where corners are at the same place without being the same.
     let sphere = shapes::icosphere(2).unwrap().to_indexed();
-    let corners: Vec<DVec3> = sphere.faces().corners().iter().map(|&v| sphere.position(v)).collect();
-    let list: Vec<[usize; 3]> = (0..corners.len() / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let corners: Vec<DVec3> =
+        sphere.faces().corners().iter().map(|&v| sphere.position(v)).collect();
+    let list: Vec<[usize; 3]> =
+        (0..corners.len() / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     assert!(pairs(&faces(corners, &list)).is_empty());
 }
 

@@ -94,11 +94,9 @@ fn random_point(random: &mut Random) -> DVec3 {
 
 /// The corners of all triangles, and the face of each.
 fn triangles(set: &IndexedFaceSet) -> Vec<([DVec3; 3], FaceId)> {
-    let (cut, sources) =
-        triangulate_faces(set, TriangulationMethod::Ears, Progress::NONE).unwrap();
-    let corners = cut.faces().iter().map(|(f, face)| {
-        ([0, 1, 2].map(|k| cut.position(face[k])), sources[f])
-    });
+    let (cut, sources) = triangulate_faces(set, TriangulationMethod::Ears, Progress::NONE).unwrap();
+    let corners =
+        cut.faces().iter().map(|(f, face)| ([0, 1, 2].map(|k| cut.position(face[k])), sources[f]));
     corners.collect()
 }
 

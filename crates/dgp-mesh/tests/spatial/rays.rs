@@ -53,7 +53,10 @@ fn hits_are_those_of_trying_all_triangles() {
                 assert_eq!(hits.len(), right.len(), "{name} {ray:?}");
             }
             for (hit, t) in hits.iter().zip(&right).filter(|_| name != "needles") {
-                assert!(((hit.t - t) * size).abs() < 1e-11 * scale, "{name} {ray:?}: {hit:?}, not {t}");
+                assert!(
+                    ((hit.t - t) * size).abs() < 1e-11 * scale,
+                    "{name} {ray:?}: {hit:?}, not {t}"
+                );
                 let on_ray = ray.origin + hit.t * ray.direction;
                 assert!((hit.point - on_ray).length() < 1e-9 * scale, "{name} {ray:?}: {hit:?}");
                 let corners = hit.vertices.map(|v| set.position(v));
@@ -99,7 +102,9 @@ fn many_rays_give_the_bits_of_one_by_one_and_bad_ones_are_named() {
     ] {
         let error = tree.first_hits(&[rays[0], bad], Progress::NONE);
         assert_eq!(error, Err(Error::InvalidRay { index: 1 }));
-        assert!(tree.first_hit(&bad).is_none() && !tree.is_hit(&bad) && tree.all_hits(&bad).is_empty());
+        assert!(
+            tree.first_hit(&bad).is_none() && !tree.is_hit(&bad) && tree.all_hits(&bad).is_empty()
+        );
     }
 }
 

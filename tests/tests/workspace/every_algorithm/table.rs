@@ -18,7 +18,10 @@ use dgp_mesh::{
 };
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
-use super::{inputs::Input, laplacians::laplacians, outcome::Outcome, spatial::spatial, subdivisions::subdivisions};
+use super::{
+    inputs::Input, laplacians::laplacians, outcome::Outcome, spatial::spatial,
+    subdivisions::subdivisions,
+};
 
 /// A name and what to run.
 pub(crate) struct Algorithm {
