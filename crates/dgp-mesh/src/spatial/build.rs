@@ -18,7 +18,7 @@
 //!   construction on GPUs", Computer Graphics Forum 28(2), 2009 (the curve); Goldsmith and Salmon,
 //!   "Automatic creation of object hierarchies for ray tracing", IEEE Computer Graphics and Applications
 //!   7(5), 1987 (the heuristic).
-//! - Departs from it: one axis only is binned, which costs a third and loses nothing on surfaces.
+//! - Departs from it: one axis only is binned, a third of the work.
 
 use super::{
     curve,
