@@ -2,6 +2,7 @@
 //!
 //! The place on the curve of Z-order has the bits of the three coordinates one after the other.
 //!
+//! - Input: points around the middle of a frame.
 //! - Cost: O(n): keys in parallel, then three passes of a radix sort.
 //! - Reference: Morton, "A computer oriented geodetic data base and a new technique in file sequencing",
 //!   IBM, 1966.
