@@ -145,7 +145,8 @@ pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<(
             let options = HausdorffOptions { tolerance, ..HausdorffOptions::default() };
             run(&mut || {
                 let (a, b) = (built(&input.set)?, built(&moved)?);
-                Ok(one_sided_hausdorff(&a, &b, &options, Progress::NONE)?.upper)
+                let found = one_sided_hausdorff(&a, &b, &options, Progress::NONE)?;
+                Ok(0.5 * (found.lower + found.upper))
             })?;
             report.insert("bound".into(), json!(bound));
         }

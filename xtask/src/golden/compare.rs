@@ -58,7 +58,7 @@ pub(crate) const QUANTITIES: [(&str, &str); 42] = [
     ("segment_any", "equal"),
     ("box_faces", "equal"),
     ("self_intersections", "equal"),
-    ("hausdorff", "within the bound"),
+    ("hausdorff", "intervals overlap"),
 ];
 
 /// How one quantity of one input compares.
