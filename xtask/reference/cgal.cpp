@@ -3,6 +3,8 @@
 
 // Jets are fitted by Eigen.
 #define CGAL_EIGEN3_ENABLED
+#include "spatial.hpp"
+
 #include <CGAL/Monge_via_jet_fitting.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/compute_normal.h>
@@ -364,6 +366,7 @@ int main(int count, char** arguments) {
             else if (call.operation == "normals") normals(report, raw, call.repeat);
             else if (call.operation == "write-ascii") write(report, raw, call, false);
             else if (call.operation == "write-binary") write(report, raw, call, true);
+            else if (spatial::perform(report, raw, call)) {}
             else throw std::runtime_error("CGAL's driver has no operation " + call.operation);
         }
         report.print();

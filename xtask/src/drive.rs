@@ -1,6 +1,7 @@
 //! One operation of ours in a process of its own, by the protocol of the reference drivers, so that
 //! time and memory of peers and of us are measured alike.
 
+mod spatial;
 pub(crate) mod subdivision;
 
 use std::{
@@ -133,6 +134,7 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
         "subdivide" | "plan-refine" | "plan" | "refine" | "stencils" => {
             subdivision::perform(call, report)
         }
+        operation if spatial::OPERATIONS.contains(&operation) => spatial::perform(call, report),
         "read" => time(report, call.repeat, || built(&dgp_io::read(&call.input)?.set)),
         "parse" => time(report, call.repeat, || Ok(dgp_io::read(&call.input)?)),
         "write-ascii" | "write-binary" => write(call, report),

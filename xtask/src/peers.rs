@@ -99,7 +99,8 @@ impl Peers {
             },
         };
         let program = compile("openmesh", &folder, &openmesh.arguments)?;
-        let cgal = compile("cgal", &folder, &["-I/usr/include/eigen3".into()])?;
+        let arguments = ["-I/usr/include/eigen3", "-lgmp", "-lmpfr"].map(String::from);
+        let cgal = compile("cgal", &folder, &arguments)?;
         let cholmod = match cholmod(&folder) {
             Ok(program) => Some(Driver::new("CHOLMOD", program)),
             Err(error) => {
@@ -236,7 +237,9 @@ fn compile(name: &str, folder: &Path, arguments: &[String]) -> Outcome<PathBuf> 
     let source = sources.join(format!("{name}.cpp"));
     let mut hasher = DefaultHasher::new();
     fs::read(&source)?.hash(&mut hasher);
-    fs::read(sources.join("protocol.hpp"))?.hash(&mut hasher);
+    for header in ["protocol.hpp", "spatial.hpp"] {
+        fs::read(sources.join(header))?.hash(&mut hasher);
+    }
     (FLAGS, arguments).hash(&mut hasher);
     let (stamp, stamp_file) = (hasher.finish().to_string(), folder.join(format!("{name}.stamp")));
     let program = folder.join(format!("{name}-driver"));

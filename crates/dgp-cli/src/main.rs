@@ -41,6 +41,8 @@ fn main() -> ExitCode {
         Command::Laplacian(command) => command.run(&common),
         Command::Heat(command) => command.run(&common),
         Command::Correspond(command) => command.run(&common),
+        Command::Compare(command) => command.run(&common),
+        Command::Distance(command) => command.run(&common),
         Command::Solve(command) => command.run(&common),
         Command::Shape(command) => command.run(&common),
         Command::Render(command) => command.run(&common),

@@ -115,6 +115,31 @@ pub enum Error {
         weight: f64,
     },
 
+    /// A coordinate of a vertex is infinite or not a number.
+    #[error("{vertex} has a coordinate that is not finite; `repair` drops it with its faces")]
+    NonFinite {
+        /// The first such vertex that a face has.
+        vertex: VertexId,
+    },
+
+    /// A coordinate of a given point is infinite or not a number.
+    #[error("point {index} has a coordinate that is not finite; leave it out")]
+    NonFinitePoint {
+        /// Which of the points, counted from 0.
+        index: usize,
+    },
+
+    /// A ray leads nowhere.
+    #[error("ray {index} has no finite origin, no direction or a negative end; leave it out")]
+    InvalidRay {
+        /// Which of the rays, counted from 0.
+        index: usize,
+    },
+
+    /// There is nothing to look for.
+    #[error("there are no triangles and no points to find; give a surface that has faces")]
+    Empty,
+
     /// An option has a value outside its range.
     #[error("option `{name}` is {value}, but must be {expected}")]
     InvalidOption {

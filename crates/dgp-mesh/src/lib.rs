@@ -12,6 +12,7 @@
 //! | what mends it | [`repair`](repair()), [`repair_faces`], [`RepairOptions`] |
 //! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
 //! | triangles from polygons | [`triangulate()`] [`triangulate_faces`] [`triangulate_polygon`] |
+//! | where things are | [`spatial`]: nearest points, rays, inside and outside, distances of surfaces |
 //! | edits | [`Editor`], [`reorder`], [`Mesh::reverse`], [`Mesh::validate`] |
 //! | search | [`graph`]: breadth-first, Dijkstra, A*, adjacency lists |
 //! | long computations | [`Progress`], [`Cancelled`], [`parallel`] |
@@ -50,6 +51,7 @@ mod repair;
 mod set;
 pub mod shapes;
 mod soup;
+pub mod spatial;
 pub mod topology;
 mod triangulate;
 mod validate;

@@ -9,6 +9,7 @@
 //! | make primitives, or something that looks like a scan | [`mesh::shapes`] |
 //! | know lengths, areas, normals, volumes | [`mesh::measure`] |
 //! | know components, holes, genus | [`mesh::topology`] |
+//! | find nearest points, hits of rays, what is inside, how far surfaces are apart | [`mesh::spatial`] |
 //! | find shortest paths on edges | [`mesh::graph`] |
 //! | list what is wrong with faces, and mend it | [`mesh::defects`], [`mesh::repair()`] |
 //! | read and write files | [`io`] |

@@ -153,6 +153,7 @@ pub(super) fn all() -> Vec<Case> {
         });
     }
     files(&mut cases);
+    spatial(&mut cases);
     subdivision(&mut cases);
     cases
 }
@@ -173,6 +174,23 @@ fn files(cases: &mut Vec<Case>) {
         });
         let operation = if binary { "write-binary" } else { "write-ascii" };
         cases.push(Case { data: Data::Output(file), ..case(write, "mesh to file", operation) });
+    }
+}
+
+/// The hierarchy of triangles, built and asked.
+fn spatial(cases: &mut Vec<Case>) {
+    for (name, what, largest) in [
+        ("tree-build", "hierarchy of triangles", usize::MAX),
+        ("closest-near", "100 thousand nearest points near the surface", usize::MAX),
+        ("closest-box", "10 thousand nearest points anywhere in the box", usize::MAX),
+        ("ray-first", "first hits of 100 thousand rays", usize::MAX),
+        ("ray-any", "whether 100 thousand rays hit", usize::MAX),
+        ("segment-any", "whether 100 thousand segments hit", usize::MAX),
+        ("box-faces", "faces in 10 thousand boxes", usize::MAX),
+        ("self-intersections", "pairs of faces that meet, after noise", usize::MAX),
+        ("hausdorff", "one-sided Hausdorff distance to 10⁻⁴ of the diagonal", 100_000),
+    ] {
+        cases.push(Case { openmesh: None, largest, ..case(name, what, name) });
     }
 }
 

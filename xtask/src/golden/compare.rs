@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 41] = [
+pub(crate) const QUANTITIES: [(&str, &str); 49] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -58,6 +58,14 @@ pub(crate) const QUANTITIES: [(&str, &str); 41] = [
     ("face_varying_corners_plus_1", "1e-12 · largest coordinate"),
     ("face_varying_corners_plus_2", "1e-12 · largest coordinate"),
     ("face_varying_boundaries", "1e-12 · largest coordinate"),
+    ("closest_near", "sums to 1e-12"),
+    ("closest_box", "sums to 1e-12"),
+    ("ray_first", "sums to 1e-9"),
+    ("ray_any", "equal"),
+    ("segment_any", "equal"),
+    ("box_faces", "equal"),
+    ("self_intersections", "equal"),
+    ("hausdorff", "intervals overlap"),
 ];
 
 /// How one quantity of one input compares.

@@ -9,6 +9,7 @@ mod estimates;
 mod facts;
 mod inputs;
 mod refined;
+mod spatial;
 mod stored;
 mod table;
 
@@ -37,8 +38,15 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             table.print();
             return table.verdict();
         }
+        [option] if option == "--spatial" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            spatial::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--regenerate" => true,
-        _ => return Err("usage: golden [--regenerate | --refined]".into()),
+        _ => return Err("usage: golden [--regenerate | --refined | --spatial]".into()),
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;
@@ -58,6 +66,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     }
     estimates::compare(&peers, &folder, &mut table)?;
     refined::compare(&peers, &folder, &mut table)?;
+    spatial::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

@@ -2,6 +2,7 @@
 
 mod cage;
 mod check;
+mod compare;
 mod completions;
 mod compress;
 mod convert;
@@ -9,6 +10,7 @@ mod correspond;
 mod crease;
 mod curvature;
 mod demo;
+mod distance;
 mod edit;
 mod evaluate;
 mod geodesic;
@@ -70,6 +72,10 @@ pub(crate) enum Command {
     Heat(heat::Heat),
     /// Which point of one shape is which of another
     Correspond(correspond::Correspond),
+    /// How far two surfaces are apart: Hausdorff distance with sure bounds, mean, Chamfer
+    Compare(compare::Compare),
+    /// How far points are from a surface, and whether they are inside
+    Distance(distance::Distance),
     /// Solve a sparse system, or find the smallest eigenvalues of a matrix
     Solve(solve::Solve),
     /// Make a shape: regular solids, Goldberg polyhedra, spheres, tori, …

@@ -65,6 +65,16 @@ pub(crate) fn color_vertices(
     map: ColorMap,
     symmetric: bool,
 ) {
+    let colors = vertex_colors(values, map, symmetric);
+    mesh.attributes_mut().vertex.insert(COLOR, colors);
+}
+
+/// Colors that show these numbers; `symmetric` puts 0 into the middle of the map.
+pub(crate) fn vertex_colors(
+    values: &VertexMap<f64>,
+    map: ColorMap,
+    symmetric: bool,
+) -> VertexMap<Color> {
     let mut sorted: Vec<f64> = values.values().iter().copied().filter(|x| x.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     // All but 2 % at each end, so that an outlier does not hide the rest.
@@ -74,11 +84,10 @@ pub(crate) fn color_vertices(
         high = low.abs().max(high.abs());
         low = -high;
     }
-    let colors = values.map(|&x| {
+    values.map(|&x| {
         let part = if high > low { ((x - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
         Color::from_rgba8(map.color(part).to_rgba8())
-    });
-    mesh.attributes_mut().vertex.insert(COLOR, colors);
+    })
 }
 
 /// Lines of numbers separated by commas under a line of names.

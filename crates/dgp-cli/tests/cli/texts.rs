@@ -20,6 +20,8 @@ const COMMANDS: [&str; 23] = [
     "laplacian",
     "heat",
     "correspond",
+    "compare",
+    "distance",
     "solve",
     "shape",
     "render",

@@ -4,6 +4,7 @@
 mod inputs;
 mod laplacians;
 mod outcome;
+mod spatial;
 mod subdivisions;
 mod table;
 

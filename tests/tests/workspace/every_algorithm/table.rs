@@ -18,7 +18,10 @@ use dgp_mesh::{
 };
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
-use super::{inputs::Input, laplacians::laplacians, outcome::Outcome, subdivisions::subdivisions};
+use super::{
+    inputs::Input, laplacians::laplacians, outcome::Outcome, spatial::spatial,
+    subdivisions::subdivisions,
+};
 
 /// A name and what to run.
 pub(crate) struct Algorithm {
@@ -50,6 +53,7 @@ pub(crate) fn algorithms() -> Vec<Algorithm> {
         measures(),
         curvatures(),
         searches(),
+        spatial(),
         edits(),
         smoothing(),
         laplacians(),
