@@ -1,0 +1,30 @@
+//! Fewer faces for the same shape, and levels of detail that replay exactly.
+//!
+//! | topic | items |
+//! |---|---|
+//! | fewer triangles, fast and close to the input | [`decimate_quadric`], [`QuadricOptions`] |
+//! | quadric error metrics | [`Quadric`] |
+//!
+//! ```
+//! use dgp_mesh::{Progress, VertexSet, shapes};
+//! use dgp_remesh::{QuadricOptions, Target, decimate_quadric};
+//!
+//! let mut mesh = shapes::icosphere(4)?;
+//! let options = QuadricOptions::default();
+//! let report =
+//!     decimate_quadric(&mut mesh, Target::Faces(500), &VertexSet::new(), &options, Progress::NONE)?;
+//! assert_eq!(mesh.face_count(), 500);
+//! assert!(report.largest_error < 0.02);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod decimate;
+mod error;
+mod quadric;
+
+pub use decimate::{
+    Boundary, DecimationReport, Memory, Placement, QuadricOptions, Refusals, StopReason, Target,
+    decimate_quadric,
+};
+pub use error::Error;
+pub use quadric::Quadric;
