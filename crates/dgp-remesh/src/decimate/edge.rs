@@ -15,69 +15,105 @@ pub(super) struct Candidate {
     pub(super) position: DVec3,
 }
 
-/// Quadrics of the ends of an edge, each relative to its end.
+/// Planes through a vertex as squared distances from it: A of pᵀ A p.
+pub(super) type Through = [f64; 6];
+
+#[inline]
+fn times(a: &Through, [x, y, z]: [f64; 3]) -> DVec3 {
+    let [xx, xy, xz, yy, yz, zz] = *a;
+    DVec3::new(xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z)
+}
+
+#[inline]
+fn trace(a: &Through) -> f64 {
+    a[0] + a[3] + a[5]
+}
+
+/// An edge with the planes through its ends, and perhaps others that its ends remember.
 pub(super) struct Ends<'a> {
     pub(super) a: DVec3,
     pub(super) b: DVec3,
-    pub(super) quadrics: [&'a Quadric; 2],
+    pub(super) through: [&'a Through; 2],
+    pub(super) remembered: Option<[&'a Quadric; 2]>,
+    /// How much the squared length of the edge counts.
+    pub(super) slack: f64,
 }
 
 impl Ends<'_> {
     /// The cost of having both ends at `a + x`.
     #[inline]
     fn cost(&self, x: DVec3, e: DVec3) -> f64 {
-        (self.quadrics[0].at(x) + self.quadrics[1].at(x - e)).max(0.0)
+        let y = x - e;
+        let [a, b] = self.through;
+        let mut cost = times(a, x.to_array()).dot(x) + times(b, y.to_array()).dot(y);
+        if let Some([p, q]) = self.remembered {
+            cost += p.at(x) + q.at(y);
+        }
+        cost.max(0.0)
     }
 
     /// A collapse to `position`.
-    pub(super) fn fixed(&self, position: DVec3, slack: f64) -> Candidate {
+    pub(super) fn fixed(&self, position: DVec3) -> Candidate {
         let e = self.b - self.a;
-        self.candidate(position, self.cost(position - self.a, e), e, slack)
+        self.candidate(position, self.cost(position - self.a, e), e)
     }
 
-    fn candidate(&self, position: DVec3, cost: f64, e: DVec3, slack: f64) -> Candidate {
-        let weight = self.quadrics[0].weight() + self.quadrics[1].weight();
-        Candidate { key: cost + slack * weight * e.length_squared(), cost, weight, position }
+    #[inline]
+    fn candidate(&self, position: DVec3, cost: f64, e: DVec3) -> Candidate {
+        let mut weight = trace(self.through[0]) + trace(self.through[1]);
+        if let Some([p, q]) = self.remembered {
+            weight += p.weight() + q.weight();
+        }
+        Candidate { key: cost + self.slack * weight * e.length_squared(), cost, weight, position }
     }
 
     /// The better end.
     #[inline]
-    pub(super) fn best_end(&self, slack: f64) -> Candidate {
+    pub(super) fn best_end(&self) -> Candidate {
         let e = self.b - self.a;
         let (at_a, at_b) = (self.cost(DVec3::ZERO, e), self.cost(e, e));
         if at_a <= at_b {
-            self.candidate(self.a, at_a, e, slack)
+            self.candidate(self.a, at_a, e)
         } else {
-            self.candidate(self.b, at_b, e, slack)
+            self.candidate(self.b, at_b, e)
         }
     }
 
-    /// The best point; where the quadrics leave it free the best of ends and middle.
+    /// The best point, sought near the middle; the better end where no point is better.
     #[inline]
-    pub(super) fn best(&self, damping: f64, slack: f64) -> Candidate {
+    pub(super) fn best(&self, damping: f64) -> Candidate {
         let e = self.b - self.a;
-        let end = self.best_end(slack);
-        let [qa, qb] = self.quadrics;
-        let mut a = qa.a;
-        for (x, y) in a.iter_mut().zip(qb.a) {
+        let [qa, qb] = self.through;
+        let mut a = *qa;
+        for (x, y) in a.iter_mut().zip(qb) {
             *x += y;
         }
-        let middle = 0.5 * e;
-        let damp = damping * (a[0] + a[3] + a[5]);
+        let (ea, eb) = (times(qa, e.to_array()), times(qb, e.to_array()));
+        let (mut at_a, mut at_b) = (eb.dot(e), ea.dot(e));
+        // Minus half of the gradient at the middle.
+        let mut pull = 0.5 * (eb - ea);
+        if let Some([p, q]) = self.remembered {
+            for (k, x) in a.iter_mut().enumerate() {
+                *x += p.a[k] + q.a[k];
+            }
+            at_a += p.c + q.at(-e);
+            at_b += p.at(e) + q.c;
+            pull -= p.times(0.5 * e) + p.b - q.times(0.5 * e) + q.b;
+        }
+        let damp = damping * trace(&a);
         for k in [0, 3, 5] {
             a[k] += damp;
         }
-        // Gradient at the middle: A_a m + b_a + A_b (m − e) + b_b.
-        let gradient = qa.times(middle) + qa.b - qb.times(middle) + qb.b;
-        if let Some(step) = solve(a, -gradient) {
-            let x = middle + step;
+        let (end, at_end) = if at_a <= at_b { (self.a, at_a) } else { (self.b, at_b) };
+        if let Some(step) = solve(a, pull) {
+            let x = 0.5 * e + step;
             let cost = self.cost(x, e);
             // Farther away than the edge is long nothing is known of the surface.
-            if cost < end.cost && step.length_squared() <= 4.0 * e.length_squared() {
-                return self.candidate(self.a + x, cost, e, slack);
+            if cost < at_end && step.length_squared() <= 4.0 * e.length_squared() {
+                return self.candidate(self.a + x, cost, e);
             }
         }
-        end
+        self.candidate(end, at_end.max(0.0), e)
     }
 }
 

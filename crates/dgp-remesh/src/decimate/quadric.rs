@@ -10,12 +10,12 @@
 use std::f64::consts::PI;
 
 use dgp_mesh::{
-    Cancelled, Connectivity, DVec3, Editor, FaceMap, Mesh, Progress, VertexId, VertexMap, VertexSet,
+    Cancelled, Connectivity, DVec3, Editor, FaceId, FaceMap, Mesh, Progress, VertexId, VertexMap, VertexSet,
     graph::IndexedHeap, measure::bounding_box, parallel,
 };
 
 use super::{
-    edge::{Candidate, Ends, fence},
+    edge::{Candidate, Ends, Through, fence},
     report::{DecimationReport, Refusals, StopReason, Target},
     rings::{NONE, RIM, Rings, SHARP, Shared},
 };
@@ -126,8 +126,11 @@ struct State {
     target: Target,
     rings: Rings,
     frame: Frame,
-    /// Present planes and remembered ones, relative to the vertex.
-    quadrics: Vec<Quadric>,
+    /// The normal of each triangle times the root of its area: its plane, with its weight.
+    normals: Vec<DVec3>,
+    /// The planes of the present triangles around each vertex.
+    through: Vec<Through>,
+    /// Planes of the input, relative to the vertex.
     remembered: Vec<Quadric>,
     is_stale: Vec<bool>,
     is_fixed: Vec<bool>,
@@ -217,7 +220,8 @@ impl State {
             options: *options,
             target,
             frame,
-            quadrics: Vec::new(),
+            normals: Vec::new(),
+            through: Vec::new(),
             remembered: Vec::new(),
             is_stale: vec![false; n],
             is_fixed,
@@ -240,12 +244,19 @@ impl State {
             error_limit: target.error_limit() / frame.unit,
             rings,
         };
-        let own: Vec<Quadric> =
+        let f_count = mesh.face_count();
+        state.normals =
+            parallel::map(f_count, |f: FaceId| state.normal(f.index() as u32)).into_values();
+        let own: Vec<Through> =
             parallel::map(n, |v: VertexId| state.present(v.index() as u32)).into_values();
         let [present, share] = shares;
-        state.quadrics = own.iter().map(|q| weighted(q, present + share)).collect();
         if share > 0.0 {
-            state.remembered = own;
+            let of = |a: &Through| Quadric { a: a.map(|x| x * share), ..Quadric::ZERO };
+            state.remembered = own.iter().map(of).collect();
+        }
+        state.through = own;
+        if present == 0.0 {
+            state.through.fill([0.0; 6]);
         }
         progress.report(0.5)?;
         let ranked = parallel::map(n, |v: VertexId| state.rank(v.index() as u32)).into_values();
@@ -257,54 +268,54 @@ impl State {
         Ok(state)
     }
 
-    /// The planes of the present triangles around `v`, relative to it.
-    fn present(&self, v: u32) -> Quadric {
+    /// The plane of `f` with its weight.
+    #[inline]
+    fn normal(&self, f: u32) -> DVec3 {
+        let [p, q, r] = self.rings.faces[f as usize].map(|v| self.rings.positions[v as usize]);
+        let cross = (q - p).cross(r - p);
+        let square = cross.length_squared();
+        if square > 0.0 { cross * (0.5 / square.sqrt()).sqrt() } else { DVec3::ZERO }
+    }
+
+    /// The planes of the present triangles around `v`.
+    #[inline]
+    fn present(&self, v: u32) -> Through {
         let rings = &self.rings;
-        let p = rings.positions[v as usize];
         let mut sum = [0.0; 6];
-        let mut add = |terms: [f64; 6]| {
+        let add = |sum: &mut Through, terms: Through| {
             for (x, y) in sum.iter_mut().zip(terms) {
                 *x += y;
             }
         };
         for &f in rings.ring(v) {
-            let [x, y] = rings.others(f, v).map(|w| rings.positions[w as usize] - p);
-            let cross = x.cross(y);
-            let twice_area = cross.length();
-            if !(twice_area > 0.0) {
-                continue;
-            }
-            add(outer(cross, 0.5 / twice_area));
+            let normal = self.normals[f as usize];
+            add(&mut sum, outer(normal, 1.0));
             let bits = rings.sides[f as usize];
             if bits != 0 {
+                let p = rings.positions[v as usize];
+                let [x, y] = rings.others(f, v).map(|w| rings.positions[w as usize] - p);
                 let k = rings.corner(f, v);
-                let normal = cross / twice_area;
+                let normal = normal.normalize_or_zero();
                 for (side, s) in [(k, x), ((k + 2) % 3, y)] {
                     if bits & (RIM << side) != 0 {
-                        add(fence(s, normal, self.options.boundary_weight));
+                        add(&mut sum, fence(s, normal, self.options.boundary_weight));
                     } else if bits & (SHARP << side) != 0 {
-                        add(fence(s, normal, self.options.feature_weight));
+                        add(&mut sum, fence(s, normal, self.options.feature_weight));
                     }
                 }
             }
         }
-        Quadric { a: sum, b: DVec3::ZERO, c: 0.0 }
+        sum
     }
 
+    #[inline]
     fn refresh(&mut self, v: u32) {
-        if !self.is_stale[v as usize] {
-            return;
+        if self.is_stale[v as usize] {
+            self.is_stale[v as usize] = false;
+            if self.shares[0] > 0.0 {
+                self.through[v as usize] = self.present(v);
+            }
         }
-        self.is_stale[v as usize] = false;
-        let [present, share] = self.shares;
-        let mut sum = Quadric::ZERO;
-        if present > 0.0 {
-            sum = self.present(v);
-        }
-        if share > 0.0 {
-            sum += weighted(&self.remembered[v as usize], share);
-        }
-        self.quadrics[v as usize] = sum;
     }
 
     /// The collapse of the edge between `v` and `w`.
@@ -315,14 +326,16 @@ impl State {
         let ends = Ends {
             a: positions[i],
             b: positions[j],
-            quadrics: [&self.quadrics[i], &self.quadrics[j]],
+            through: [&self.through[i], &self.through[j]],
+            remembered: (!self.remembered.is_empty())
+                .then(|| [&self.remembered[i], &self.remembered[j]]),
+            slack: self.options.length_weight,
         };
-        let slack = self.options.length_weight;
         match (self.is_fixed[i], self.is_fixed[j], self.options.placement) {
-            (true, _, _) => ends.fixed(ends.a, slack),
-            (_, true, _) => ends.fixed(ends.b, slack),
-            (_, _, Placement::Ends) => ends.best_end(slack),
-            (_, _, Placement::Optimal) => ends.best(self.options.damping, slack),
+            (true, _, _) => ends.fixed(ends.a),
+            (_, true, _) => ends.fixed(ends.b),
+            (_, _, Placement::Ends) => ends.best_end(),
+            (_, _, Placement::Optimal) => ends.best(self.options.damping),
         }
     }
 
@@ -355,10 +368,13 @@ impl State {
         self.refresh(v);
         for k in 0..self.rings.ring_len(v) {
             let f = self.rings.ring(v)[k];
-            for w in self.rings.others(f, v) {
-                if w > v {
-                    self.refresh(w);
-                }
+            let [next, prev] = self.rings.others(f, v);
+            if next > v {
+                self.refresh(next);
+            }
+            // The last one of a fan is next of no triangle.
+            if self.rings.on_rim[v as usize] && prev > v {
+                self.refresh(prev);
             }
         }
     }
@@ -442,7 +458,6 @@ impl State {
     /// Whether a triangle at `v` but not at `other` turns too far when `v` moves to `p`.
     fn turns_over(&self, v: u32, other: u32, p: DVec3) -> bool {
         let positions = &self.rings.positions;
-        let old = positions[v as usize];
         let limit = self.least_cosine;
         self.rings.ring(v).iter().any(|&f| {
             let [x, y] = self.rings.others(f, v);
@@ -450,12 +465,11 @@ impl State {
                 return false;
             }
             let (x, y) = (positions[x as usize], positions[y as usize]);
-            let side = y - x;
-            let before = side.cross(old - x);
-            let after = side.cross(p - x);
+            let before = self.normals[f as usize];
+            let after = (x - p).cross(y - p);
             let (was, is) = (before.length_squared(), after.length_squared());
-            // What had no area may turn as it likes.
             let cosine = before.dot(after);
+            // What had no area may turn as it likes.
             was > 0.0 && (cosine <= 0.0 || cosine * cosine < limit * limit * was * is)
         })
     }
@@ -482,6 +496,10 @@ impl State {
         }
         self.rings.collapse(from, to, shared);
         self.rings.positions[to as usize] = position;
+        for k in 0..self.rings.ring_len(to) {
+            let f = self.rings.ring(to)[k];
+            self.normals[f as usize] = self.normal(f);
+        }
         self.held[to as usize] = held;
         self.parent[from as usize] = to;
         self.collapses += 1;
@@ -554,7 +572,7 @@ impl State {
         let vertex_map = VertexMap::from_fn(n, |v| VertexId::new(root(v)));
         let mut face_map = FaceMap::filled(self.rings.faces.len(), None);
         for (new, (old, _)) in self.rings.left().enumerate() {
-            face_map[old] = Some(dgp_mesh::FaceId::new(new));
+            face_map[old] = Some(FaceId::new(new));
         }
         let report = DecimationReport {
             vertices: [n, kept.len()],
@@ -589,10 +607,6 @@ impl State {
         }
         let _ = editor.finish();
     }
-}
-
-fn weighted(q: &Quadric, share: f64) -> Quadric {
-    Quadric { a: q.a.map(|x| x * share), b: q.b * share, c: q.c * share }
 }
 
 fn has_data(mesh: &Mesh) -> bool {

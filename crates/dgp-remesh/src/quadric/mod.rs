@@ -186,11 +186,12 @@ pub(crate) fn outer(n: DVec3, weight: f64) -> [f64; 6] {
 #[inline]
 pub(crate) fn solve([xx, xy, xz, yy, yz, zz]: [f64; 6], r: DVec3) -> Option<DVec3> {
     let least = 64.0 * f64::EPSILON * (xx + yy + zz);
-    let l1 = xy / xx;
-    let l2 = xz / xx;
+    let i0 = 1.0 / xx;
+    let (l1, l2) = (xy * i0, xz * i0);
     let d1 = yy - l1 * xy;
     let off = yz - l1 * xz;
-    let l3 = off / d1;
+    let i1 = 1.0 / d1;
+    let l3 = off * i1;
     let d2 = zz - l2 * xz - l3 * off;
     if !(xx > least && d1 > least && d2 > least) {
         return None;
@@ -198,8 +199,8 @@ pub(crate) fn solve([xx, xy, xz, yy, yz, zz]: [f64; 6], r: DVec3) -> Option<DVec
     let y1 = r.y - l1 * r.x;
     let y2 = r.z - l2 * r.x - l3 * y1;
     let z = y2 / d2;
-    let y = y1 / d1 - l3 * z;
-    let x = r.x / xx - l1 * y - l2 * z;
+    let y = y1 * i1 - l3 * z;
+    let x = r.x * i0 - l1 * y - l2 * z;
     Some(DVec3::new(x, y, z))
 }
 
