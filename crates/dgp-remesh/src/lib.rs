@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use dgp_mesh::{Progress, VertexSet, shapes};
-//! use dgp_remesh::{QuadricOptions, Target, decimate_quadric};
+//! use dgp_remesh::{QuadricOptions, Target, Volume, decimate_quadric};
 //!
 //! let mut mesh = shapes::icosphere(4)?;
 //! let options = QuadricOptions::default();
@@ -24,7 +24,7 @@ mod quadric;
 
 pub use decimate::{
     Boundary, DecimationReport, Memory, Placement, QuadricOptions, Refusals, StopReason, Target,
-    decimate_quadric,
+    Volume, decimate_quadric,
 };
 pub use error::Error;
 pub use quadric::Quadric;

@@ -37,6 +37,8 @@ pub(super) struct Ends<'a> {
     pub(super) remembered: Option<[&'a Quadric; 2]>,
     /// How much the squared length of the edge counts.
     pub(super) slack: f64,
+    /// Twice the vector area of the triangles around each end, those at the edge only with the first.
+    pub(super) areas: Option<[DVec3; 2]>,
 }
 
 impl Ends<'_> {
@@ -105,7 +107,18 @@ impl Ends<'_> {
             a[k] += damp;
         }
         let (end, at_end) = if at_a <= at_b { (self.a, at_a) } else { (self.b, at_b) };
-        if let Some(step) = solve(a, pull) {
+        if let Some(mut step) = solve(a, pull) {
+            if let Some([ga, gb]) = self.areas
+                && let Some(r) = solve(a, ga + gb)
+            {
+                // Six times the volume that is swept: G_a·x + G_b·(x − e), x = e/2 + step.
+                let g = ga + gb;
+                let swept = g.dot(0.5 * e + step) - gb.dot(e);
+                let along = g.dot(r);
+                if along > 0.0 {
+                    step -= r * (swept / along);
+                }
+            }
             let x = 0.5 * e + step;
             let cost = self.cost(x, e);
             // Farther away than the edge is long nothing is known of the surface.

@@ -5,5 +5,5 @@ mod quadric;
 mod report;
 mod rings;
 
-pub use quadric::{Boundary, Memory, Placement, QuadricOptions, decimate_quadric};
+pub use quadric::{Boundary, Memory, Placement, QuadricOptions, Volume, decimate_quadric};
 pub use report::{DecimationReport, Refusals, StopReason, Target};
