@@ -3,6 +3,8 @@
 //! | topic | items |
 //! |---|---|
 //! | fewer triangles, fast and close to the input | [`decimate_quadric`], [`QuadricOptions`] |
+//! | any cost, any constraint, any data | [`decimate`](decimate()), [`CollapseCost`], [`LengthCost`], [`CurvatureCost`], [`QuadricCost`] |
+//! | all levels of detail of a mesh, exactly | [`ProgressiveMesh`], [`ProgressiveStream`], [`Geomorph`] |
 //! | quadric error metrics | [`Quadric`] |
 //!
 //! ```
@@ -20,11 +22,14 @@
 
 mod decimate;
 mod error;
+mod progressive;
 mod quadric;
 
 pub use decimate::{
-    Boundary, DecimationReport, Memory, Placement, QuadricOptions, Refusals, StopReason, Target,
-    Volume, decimate_quadric,
+    Boundary, CollapseCost, CurvatureCost, DecimationOptions, DecimationReport, LengthCost, Memory,
+    Placement, Price, QuadricCost, QuadricOptions, Refusals, StopReason, Target, Volume, decimate,
+    decimate_quadric, seam_edges, sharp_edges,
 };
 pub use error::Error;
+pub use progressive::{Geomorph, ProgressiveMesh, ProgressiveStream};
 pub use quadric::Quadric;

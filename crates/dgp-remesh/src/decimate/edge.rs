@@ -130,8 +130,9 @@ impl Ends<'_> {
     }
 }
 
-/// weight · |s|² times the squared distance to the plane through side `s` of a triangle, perpendicular to it.
+/// weight · |s|³ times the squared distance to the plane through side `s` of a triangle, perpendicular to it:
+/// as much as a triangle of the size of the side counts.
 #[inline]
 pub(super) fn fence(s: DVec3, unit_normal: DVec3, weight: f64) -> [f64; 6] {
-    outer(s.cross(unit_normal), weight)
+    outer(s.cross(unit_normal), weight * s.length())
 }

@@ -17,12 +17,13 @@
 use std::f64::consts::PI;
 
 use dgp_mesh::{
-    Cancelled, Connectivity, DVec3, Editor, FaceId, FaceMap, Mesh, Progress, VertexId, VertexMap, VertexSet,
+    Cancelled, Connectivity, DVec3, EdgeId, Editor, FaceId, FaceMap, Mesh, Progress, VertexId, VertexMap, VertexSet,
     graph::IndexedHeap, measure::bounding_box, parallel,
 };
 
 use super::{
     edge::{Candidate, Ends, Through, fence},
+    generic::{seam_edges, sharp_edges},
     report::{DecimationReport, Refusals, StopReason, Target},
     rings::{NONE, RIM, Rings, SHARP, Shared},
 };
@@ -133,11 +134,35 @@ pub fn decimate_quadric(
     Ok(report)
 }
 
+/// The collapses that [`decimate_quadric`] would do, in order. The mesh stays as it is.
+pub(crate) fn collapses(
+    mesh: &Mesh,
+    target: Target,
+    fixed: &VertexSet,
+    options: &QuadricOptions,
+    progress: Progress<'_>,
+) -> Result<Vec<Done>, Error> {
+    target.check()?;
+    let mut state = State::new(mesh, target, fixed, options, progress.part(0.0, 0.1))?;
+    state.keeps_log = true;
+    if !target.is_reached(mesh.vertex_count(), mesh.face_count()) {
+        state.run(progress.part(0.1, 1.0))?;
+    }
+    let frame = state.frame;
+    for done in &mut state.log {
+        done.position = frame.position(mesh, done.held, done.position);
+    }
+    Ok(state.log)
+}
+
 /// A collapse that was done.
-struct Done {
-    from: u32,
-    to: u32,
-    position: DVec3,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Done {
+    pub(crate) from: u32,
+    pub(crate) to: u32,
+    /// The vertex of the input whose position it is, `NONE` if it is a new one.
+    held: u32,
+    pub(crate) position: DVec3,
 }
 
 struct State {
@@ -199,8 +224,12 @@ impl Frame {
         (p - self.center) / self.unit
     }
 
-    fn outside(&self, p: DVec3) -> DVec3 {
-        p * self.unit + self.center
+    /// Where a vertex is that holds the position of `held`, or else is at `p` inside.
+    fn position(&self, mesh: &Mesh, held: u32, p: DVec3) -> DVec3 {
+        match held {
+            NONE => p * self.unit + self.center,
+            held => mesh.position(VertexId::new(held as usize)),
+        }
     }
 }
 
@@ -233,6 +262,8 @@ impl State {
                 kept || fixed.contains(v)
             })
             .collect();
+        let is_protected = |&e: &EdgeId| mesh.edge_vertices(e).iter().all(|v| is_fixed[v.index()]);
+        let protected = mesh.edges().filter(is_protected).count();
         let shares = match options.memory {
             Memory::Memoryless => [1.0, 0.0],
             Memory::Kept => [0.0, 1.0],
@@ -260,7 +291,7 @@ impl State {
             log: Vec::new(),
             collapses: 0,
             largest_error: 0.0,
-            refusals: Refusals::default(),
+            refusals: Refusals { protected, ..Refusals::default() },
             start: [n, mesh.face_count()],
             stop: StopReason::TargetReached,
             shares,
@@ -560,7 +591,7 @@ impl State {
         self.collapses += 1;
         self.largest_error = self.largest_error.max(State::error(found));
         if self.keeps_log {
-            self.log.push(Done { from, to, position });
+            self.log.push(Done { from, to, held, position });
         }
         self.queue.remove(VertexId::new(from as usize));
         self.touch(to, key);
@@ -608,9 +639,8 @@ impl State {
                 kept.push(v);
             }
         }
-        let final_position = |v: u32| match self.held[v as usize] {
-            NONE => self.frame.outside(self.rings.positions[v as usize]),
-            held => mesh.position(VertexId::new(held as usize)),
+        let final_position = |v: u32| {
+            self.frame.position(mesh, self.held[v as usize], self.rings.positions[v as usize])
         };
         let positions: Vec<DVec3> = kept.iter().map(|&v| final_position(v)).collect();
         for v in 0..n as u32 {
@@ -656,8 +686,9 @@ impl State {
         for done in &self.log {
             let [from, to] = [done.from, done.to].map(|v| VertexId::new(v as usize));
             let h = editor.mesh().halfedge_between(from, to).expect("the same edges as in the rings");
+            let position = self.frame.position(editor.mesh(), NONE, done.position);
             editor
-                .collapse_at(h, self.frame.outside(done.position))
+                .collapse_at(h, position)
                 .expect("the same conditions as in the rings");
         }
         let _ = editor.finish();
@@ -669,19 +700,16 @@ fn has_data(mesh: &Mesh) -> bool {
     !(data.vertex.is_empty() && data.corner.is_empty() && data.edge.is_empty() && data.face.is_empty())
 }
 
-/// Marks the sides at which normals differ by more than `angle`.
+/// Marks the sides where normals differ by more than `angle`, and seams of data of corners.
 fn mark_sharp(rings: &mut Rings, mesh: &Mesh, angle: f64) {
-    if angle >= PI {
-        return;
+    let mut marked = seam_edges(mesh);
+    if angle < PI {
+        marked.extend(sharp_edges(mesh, angle).iter());
     }
-    for e in mesh.edges() {
-        if mesh.dihedral_angle(e).is_some_and(|turn| turn.abs() > angle) {
-            for h in e.halfedges() {
-                let Some(f) = mesh.face(h) else { continue };
-                let (f, v) = (f.index() as u32, mesh.from(h).index() as u32);
-                let k = rings.corner(f, v);
-                rings.sides[f as usize] |= SHARP << k;
-            }
-        }
+    for h in marked.iter().flat_map(EdgeId::halfedges) {
+        let Some(f) = mesh.face(h) else { continue };
+        let (f, v) = (f.index() as u32, mesh.from(h).index() as u32);
+        let k = rings.corner(f, v);
+        rings.sides[f as usize] |= SHARP << k;
     }
 }

@@ -8,12 +8,12 @@ use dgp_mesh::{DVec3, FaceId, FaceList, Mesh, VertexId};
 use crate::Error;
 
 /// No vertex, no face.
-pub(super) const NONE: u32 = u32::MAX;
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// What a side of a triangle is; side k leads from corner k to the next one.
-pub(super) const RIM: u8 = 1;
+pub(crate) const RIM: u8 = 1;
 /// Sides where the surface is sharp, see [`RIM`].
-pub(super) const SHARP: u8 = 8;
+pub(crate) const SHARP: u8 = 8;
 
 /// Where the triangles of a vertex are listed.
 #[derive(Clone, Copy, Debug)]
@@ -25,30 +25,30 @@ struct Run {
 
 /// Triangles of a manifold, with holes perhaps.
 #[derive(Clone, Debug)]
-pub(super) struct Rings {
-    pub(super) positions: Vec<DVec3>,
+pub(crate) struct Rings {
+    pub(crate) positions: Vec<DVec3>,
     /// The corners; of triangles that are gone the first is `NONE`.
-    pub(super) faces: Vec<[u32; 3]>,
+    pub(crate) faces: Vec<[u32; 3]>,
     /// Bits `RIM << k` and `SHARP << k` of side k.
-    pub(super) sides: Vec<u8>,
+    pub(crate) sides: Vec<u8>,
     /// Whether a vertex is on the rim of a hole.
-    pub(super) on_rim: Vec<bool>,
+    pub(crate) on_rim: Vec<bool>,
     runs: Vec<Run>,
     lists: Vec<u32>,
-    pub(super) face_count: usize,
-    pub(super) vertex_count: usize,
+    pub(crate) face_count: usize,
+    pub(crate) vertex_count: usize,
 }
 
 /// What a collapse does to the neighborhood.
-pub(super) struct Shared {
+pub(crate) struct Shared {
     /// The triangles that vanish, and the corner of each that is not on the edge.
-    pub(super) faces: [(u32, u32); 2],
-    pub(super) count: usize,
+    pub(crate) faces: [(u32, u32); 2],
+    pub(crate) count: usize,
 }
 
 impl Rings {
     /// The triangles of `mesh`; positions are put in by the caller.
-    pub(super) fn new(mesh: &Mesh, positions: Vec<DVec3>) -> Result<Self, Error> {
+    pub(crate) fn new(mesh: &Mesh, positions: Vec<DVec3>) -> Result<Self, Error> {
         let mut faces = Vec::with_capacity(mesh.face_count());
         let mut sides = Vec::with_capacity(mesh.face_count());
         for f in mesh.faces() {
@@ -79,27 +79,27 @@ impl Rings {
 
     /// The triangles around `v`.
     #[inline]
-    pub(super) fn ring(&self, v: u32) -> &[u32] {
+    pub(crate) fn ring(&self, v: u32) -> &[u32] {
         let run = self.runs[v as usize];
         &self.lists[run.start as usize..(run.start + run.len) as usize]
     }
 
     /// How many triangles there are around `v`.
     #[inline]
-    pub(super) fn ring_len(&self, v: u32) -> usize {
+    pub(crate) fn ring_len(&self, v: u32) -> usize {
         self.runs[v as usize].len as usize
     }
 
     /// At which corner of `f` `v` is.
     #[inline]
-    pub(super) fn corner(&self, f: u32, v: u32) -> usize {
+    pub(crate) fn corner(&self, f: u32, v: u32) -> usize {
         let [a, b, _] = self.faces[f as usize];
         if a == v { 0 } else if b == v { 1 } else { 2 }
     }
 
     /// The corners of `f` after `v`, counterclockwise.
     #[inline]
-    pub(super) fn others(&self, f: u32, v: u32) -> [u32; 2] {
+    pub(crate) fn others(&self, f: u32, v: u32) -> [u32; 2] {
         let [a, b, c] = self.faces[f as usize];
         if a == v {
             [b, c]
@@ -112,7 +112,7 @@ impl Rings {
 
     /// Calls `visit` with every neighbor of `v`.
     #[inline]
-    pub(super) fn each_neighbor(&self, v: u32, mut visit: impl FnMut(u32)) {
+    pub(crate) fn each_neighbor(&self, v: u32, mut visit: impl FnMut(u32)) {
         let on_rim = self.on_rim[v as usize];
         for &f in self.ring(v) {
             let [next, prev] = self.others(f, v);
@@ -129,7 +129,7 @@ impl Rings {
 
     /// The triangles at the edge from `a` to `b`.
     #[inline]
-    pub(super) fn shared(&self, a: u32, b: u32) -> Shared {
+    pub(crate) fn shared(&self, a: u32, b: u32) -> Shared {
         let mut shared = Shared { faces: [(NONE, NONE); 2], count: 0 };
         for &f in self.ring(a) {
             let [x, y] = self.others(f, a);
@@ -146,7 +146,7 @@ impl Rings {
     /// Whether the collapse of the edge keeps a manifold of the same topology; `marks` holds for each vertex
     /// when it was last met, `now` is later than all of them.
     #[inline]
-    pub(super) fn may_collapse(&self, a: u32, b: u32, shared: &Shared, marks: &mut [u32], now: u32) -> bool {
+    pub(crate) fn may_collapse(&self, a: u32, b: u32, shared: &Shared, marks: &mut [u32], now: u32) -> bool {
         let rims = (self.on_rim[a as usize], self.on_rim[b as usize]);
         // An edge inside whose ends are both on rims would pinch the surface.
         if shared.count == 0 || shared.count > 2 || (rims == (true, true) && shared.count == 2) {
@@ -169,7 +169,7 @@ impl Rings {
     }
 
     /// Moves `a` into `b`, whose position the caller sets.
-    pub(super) fn collapse(&mut self, a: u32, b: u32, shared: &Shared) {
+    pub(crate) fn collapse(&mut self, a: u32, b: u32, shared: &Shared) {
         for &(f, apex) in &shared.faces[..shared.count] {
             self.fold(f, a, b, apex);
             self.drop_from(apex, f);
@@ -254,13 +254,13 @@ impl Rings {
     }
 
     /// The triangles that are left, with their old numbers.
-    pub(super) fn left(&self) -> impl Iterator<Item = (FaceId, [u32; 3])> + '_ {
+    pub(crate) fn left(&self) -> impl Iterator<Item = (FaceId, [u32; 3])> + '_ {
         let faces = self.faces.iter().enumerate().filter(|(_, face)| face[0] != NONE);
         faces.map(|(f, &face)| (FaceId::new(f), face))
     }
 
     /// The triangles that are left as a list, on vertices numbered by `number`.
-    pub(super) fn face_list(&self, number: impl Fn(u32) -> VertexId) -> FaceList {
+    pub(crate) fn face_list(&self, number: impl Fn(u32) -> VertexId) -> FaceList {
         let faces = self.left().map(|(_, face)| face.map(&number));
         let mut list = Vec::with_capacity(self.face_count);
         list.extend(faces);
