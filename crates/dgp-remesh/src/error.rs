@@ -14,8 +14,18 @@ pub enum Error {
     #[error(transparent)]
     Mesh(dgp_mesh::Error),
 
+    /// The mesh has no room for more, or an edit was refused.
+    #[error(transparent)]
+    Edit(dgp_mesh::EditError),
+
+    /// The equations of a smooth surface were not solved.
+    #[error(transparent)]
+    Solve(dgp_sparse::Error),
+
     /// A face is no triangle.
-    #[error("{face} has {degree} corners, but triangles are needed; call `dgp_mesh::triangulate` first")]
+    #[error(
+        "{face} has {degree} corners, but triangles are needed; call `dgp_mesh::triangulate` first"
+    )]
     NotTriangle {
         /// The first face that is no triangle.
         face: FaceId,

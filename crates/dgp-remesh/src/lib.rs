@@ -5,6 +5,7 @@
 //! | fewer triangles, fast and close to the input | [`decimate_quadric`], [`QuadricOptions`] |
 //! | any cost, any constraint, any data | [`decimate`](decimate()), [`CollapseCost`], [`LengthCost`], [`CurvatureCost`], [`QuadricCost`] |
 //! | all levels of detail of a mesh, exactly | [`ProgressiveMesh`], [`ProgressiveStream`], [`Geomorph`] |
+//! | holes closed, smoothly | [`fill_holes`], [`FillOptions`] |
 //! | quadric error metrics | [`Quadric`] |
 //!
 //! ```
@@ -22,6 +23,7 @@
 
 mod decimate;
 mod error;
+mod fill;
 mod progressive;
 mod quadric;
 
@@ -31,5 +33,6 @@ pub use decimate::{
     decimate_quadric, seam_edges, sharp_edges,
 };
 pub use error::Error;
+pub use fill::{FillOptions, FillReport, Hole, HoleOutcome, LongestRim, Patch, fill_holes};
 pub use progressive::{Geomorph, ProgressiveMesh, ProgressiveStream};
 pub use quadric::Quadric;
