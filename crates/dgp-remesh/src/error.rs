@@ -15,7 +15,9 @@ pub enum Error {
     Mesh(dgp_mesh::Error),
 
     /// A face is no triangle.
-    #[error("{face} has {degree} corners, but triangles are needed; call `dgp_mesh::triangulate` first")]
+    #[error(
+        "{face} has {degree} corners, but triangles are needed; call `dgp_mesh::triangulate` first"
+    )]
     NotTriangle {
         /// The first face that is no triangle.
         face: FaceId,

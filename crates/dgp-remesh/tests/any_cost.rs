@@ -123,7 +123,9 @@ fn features_rims_and_corners_stay_lines() {
     mesh.validate().unwrap();
     let sharp = sharp_edges(&mesh, 0.9);
     assert!(sharp.len() >= 6);
-    let rim_points = mesh.positions().values().iter().filter(|p| (p.z.abs() - 1.0).abs() < 1e-12 || p.z.abs() < 1e-12 || (p.z - 2.0).abs() < 1e-12);
+    let rim_points = mesh.positions().values().iter().filter(|p| {
+        (p.z.abs() - 1.0).abs() < 1e-12 || p.z.abs() < 1e-12 || (p.z - 2.0).abs() < 1e-12
+    });
     for p in rim_points {
         let radius = p.x.hypot(p.y);
         assert!(radius < 1.0 + 1e-12);
@@ -149,7 +151,8 @@ fn costs_that_are_no_numbers_stop_it_and_everything_protected_is_said() {
     let none = EdgeSet::new();
     let target = Target::Faces(10);
     let report =
-        decimate(&mut mesh, target, &mut LengthCost, (&all, &none), &options, Progress::NONE).unwrap();
+        decimate(&mut mesh, target, &mut LengthCost, (&all, &none), &options, Progress::NONE)
+            .unwrap();
     assert_eq!((report.refusals.protected, report.collapses), (mesh.edge_count(), 0));
     let wrong = DecimationOptions { max_distance: -1.0, ..options };
     let result =
@@ -160,7 +163,8 @@ fn costs_that_are_no_numbers_stop_it_and_everything_protected_is_said() {
 #[test]
 fn a_cancelled_run_leaves_a_valid_mesh() {
     for limit in [0.0, 0.1, 0.5] {
-        let stop = |x: f64| if x > limit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let stop =
+            |x: f64| if x > limit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         let mut mesh = shapes::icosphere(5).unwrap();
         let none = (&VertexSet::new(), &EdgeSet::new());
         let options = DecimationOptions::default();

@@ -43,9 +43,14 @@ fn levels_are_those_of_decimation_bit_for_bit() {
             let mut decimated = mesh.clone();
             let target = Target::Vertices(levels.vertex_count());
             let options = QuadricOptions::default();
-            let _ =
-                decimate_quadric(&mut decimated, target, &VertexSet::new(), &options, Progress::NONE)
-                    .unwrap();
+            let _ = decimate_quadric(
+                &mut decimated,
+                target,
+                &VertexSet::new(),
+                &options,
+                Progress::NONE,
+            )
+            .unwrap();
             assert_eq!(shape(&levels.mesh().unwrap()), shape(&decimated), "level {level}");
         }
     }

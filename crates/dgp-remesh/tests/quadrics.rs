@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use dgp_mesh::{DVec2, DVec3, Mesh, NORMAL, Progress, UV, VertexId, VertexSet, shapes};
 use dgp_remesh::{
-    Boundary, DecimationReport, Error, Memory, Placement, QuadricOptions, StopReason, Target, decimate_quadric,
-    seam_edges,
+    Boundary, DecimationReport, Error, Memory, Placement, QuadricOptions, StopReason, Target,
+    decimate_quadric, seam_edges,
 };
 
 fn run_with(mesh: &mut Mesh, target: Target, options: &QuadricOptions) -> DecimationReport {
@@ -165,7 +165,8 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn a_cancelled_run_leaves_a_valid_mesh() {
     for limit in [0.0, 0.08, 0.3, 0.9] {
-        let stop = |x: f64| if x > limit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let stop =
+            |x: f64| if x > limit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         let mut mesh = shapes::icosphere(5).unwrap();
         let options = QuadricOptions::default();
         let result = decimate_quadric(
@@ -188,9 +189,10 @@ fn data_travel_as_on_plain_meshes() {
     let heights: Vec<f64> = dressed.positions().values().iter().map(|p| p.z).collect();
     dressed.attributes_mut().vertex.remove(NORMAL);
     dressed.attributes_mut().vertex.insert("height", heights);
-    *plain.attributes_mut() = Mesh::from_parts(plain.connectivity().clone(), plain.positions().clone())
-        .attributes()
-        .clone();
+    *plain.attributes_mut() =
+        Mesh::from_parts(plain.connectivity().clone(), plain.positions().clone())
+            .attributes()
+            .clone();
     let report = run(&mut plain, Target::Faces(300));
     let other = run(&mut dressed, Target::Faces(300));
     assert_eq!((report.vertex_map, report.face_map), (other.vertex_map, other.face_map));
@@ -205,7 +207,8 @@ fn data_travel_as_on_plain_meshes() {
 fn seams_of_texture_coordinates_stay_seams() {
     // A chart to each half of a flat grid: u jumps by 10 where x changes its sign.
     let mut mesh = shapes::grid(16, 16).unwrap();
-    let middle = 0.5 * (mesh.positions().values()[0] + mesh.positions().values()[mesh.vertex_count() - 1]);
+    let middle =
+        0.5 * (mesh.positions().values()[0] + mesh.positions().values()[mesh.vertex_count() - 1]);
     let uv: Vec<DVec2> = mesh
         .halfedges()
         .map(|h| {

@@ -131,8 +131,7 @@ impl Decimate {
                 .map_err(in_file)?;
         }
         let before = self.picture.is_some().then(|| mesh.clone());
-        let report =
-            session.run("decimating", |p| self.apply(&mut mesh, p)).map_err(in_file)?;
+        let report = session.run("decimating", |p| self.apply(&mut mesh, p)).map_err(in_file)?;
         if report.stop == StopReason::NothingLeft && self.goal.error.is_none() {
             session.warn(format!(
                 "{}: no collapse is left at {} faces; `refusals` in the report says why",
@@ -244,7 +243,10 @@ fn picture_of(meshes: [&Mesh; 2], progress: Progress<'_>) -> Result<Vec<u8>, dgp
     let panels = [("before", before), ("after", after)].map(|(name, mesh)| {
         let wireframe = if mesh.face_count() > WIRED { Stroke::NONE } else { Stroke::THIN };
         let style = Style { wireframe, boundary: Stroke::BOLD, ..Style::faceted() };
-        Panel::new(format!("{name}: {} faces", mesh.face_count()), Model { style, ..Model::new(mesh) })
+        Panel::new(
+            format!("{name}: {} faces", mesh.face_count()),
+            Model { style, ..Model::new(mesh) },
+        )
     });
     let scene = Scene { panels: panels.into() };
     let framing = Framing::Shared;

@@ -47,11 +47,8 @@ impl Progressive {
     pub(crate) fn run(&self, common: &Common) -> Result<ExitCode, Failure> {
         let mut session = Session::new("progressive", common);
         let path = &self.input.path;
-        let mut levels = if is_progressive(path) {
-            self.read(&mut session)?
-        } else {
-            self.make(&mut session)?
-        };
+        let mut levels =
+            if is_progressive(path) { self.read(&mut session)? } else { self.make(&mut session)? };
         let finest = levels.face_count();
         let level = match (self.level, self.faces) {
             (Some(level), _) => level.count(levels.level_count()),
@@ -61,7 +58,8 @@ impl Progressive {
         let target = &self.output.path;
         if is_progressive(target) {
             if self.level.is_some() || self.faces.is_some() {
-                let what = "--level and --faces choose a level for a mesh to write; a .dgpp file has all";
+                let what =
+                    "--level and --faces choose a level for a mesh to write; a .dgpp file has all";
                 return Err(Failure::Usage(what.to_owned()));
             }
             let bytes = session.run("packing", |_| Ok::<_, Failure>(levels.to_bytes()))?;

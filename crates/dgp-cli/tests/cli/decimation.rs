@@ -69,7 +69,9 @@ fn progressive_files_give_back_every_level() {
     assert_eq!(code, 0, "{value}");
     assert_eq!(value["report"]["base"]["faces"], 20);
     assert!(value["output"]["bytes"].as_u64().unwrap() > 10_000);
-    for (options, faces) in [("", 1280), ("--faces 100", 100), ("--level 0", 20), ("--level 100%", 1280)] {
+    for (options, faces) in
+        [("", 1280), ("--faces 100", 100), ("--level 0", 20), ("--level 100%", 1280)]
+    {
         let (code, value) = dgp.json(&format!("progressive s.dgpp -o r.ply {options}"));
         assert_eq!((code, &value["report"]["faces"]), (0, &json!(faces)), "{options}");
         assert_eq!(dgp.run("check r.ply -q").status.code(), Some(0), "{options}");

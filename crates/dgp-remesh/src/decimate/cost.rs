@@ -109,7 +109,8 @@ impl QuadricCost {
             let away = side.cross(mesh.face_normal(f));
             let length = away.length();
             if length > 0.0 {
-                let fence = Quadric::plane(away / length, DVec3::ZERO, boundary_weight * length * length);
+                let fence =
+                    Quadric::plane(away / length, DVec3::ZERO, boundary_weight * length * length);
                 quadrics[mesh.from(h)] += fence;
                 quadrics[mesh.to(h)] += fence;
             }

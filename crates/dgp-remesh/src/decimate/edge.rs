@@ -74,11 +74,7 @@ impl Ends<'_> {
     pub(super) fn best_end(&self) -> Candidate {
         let e = self.b - self.a;
         let (at_a, at_b) = (self.cost(DVec3::ZERO, e), self.cost(e, e));
-        if at_a <= at_b {
-            self.candidate(self.a, at_a, e)
-        } else {
-            self.candidate(self.b, at_b, e)
-        }
+        if at_a <= at_b { self.candidate(self.a, at_a, e) } else { self.candidate(self.b, at_b, e) }
     }
 
     /// The best point, sought near the middle; the better end where no point is better.

@@ -96,7 +96,9 @@ pub fn decimate(
     progress: Progress<'_>,
 ) -> Result<DecimationReport, Error> {
     target.check()?;
-    for (name, value) in [("max_distance", options.max_distance), ("least_shape", options.least_shape)] {
+    for (name, value) in
+        [("max_distance", options.max_distance), ("least_shape", options.least_shape)]
+    {
         if !(value >= 0.0) {
             return Err(Error::InvalidOption { name, value, expected: "zero or more" });
         }
@@ -229,7 +231,10 @@ impl<C: CollapseCost> Run<'_, C> {
             };
             let price = self.cost.price(mesh, halfedge, position);
             let (key, error) = (price.key, price.error);
-            if !(key < f64::INFINITY) || !position.is_finite() || !(error <= self.target.error_limit()) {
+            if !(key < f64::INFINITY)
+                || !position.is_finite()
+                || !(error <= self.target.error_limit())
+            {
                 self.refusals.error += 1;
                 continue;
             }
@@ -352,16 +357,16 @@ fn surroundings(mesh: &Mesh, ends: [VertexId; 2], p: DVec3, largest: f64) -> (bo
                 let now = corners.map(|w| mesh.position(w));
                 shape[0] = shape[0].min(roundness(now));
                 if !is_at_edge {
-                    shape[1] = shape[1].min(roundness(corners.map(|w| {
-                        if w == v { p } else { mesh.position(w) }
-                    })));
+                    shape[1] = shape[1]
+                        .min(roundness(corners.map(|w| if w == v { p } else { mesh.position(w) })));
                 }
             }
             if largest >= PI || (is_at_edge && mesh.degree(f) == 3) {
                 continue;
             }
             let before = vector_area(mesh, f, |w| mesh.position(w));
-            let after = vector_area(mesh, f, |w| if ends.contains(&w) { p } else { mesh.position(w) });
+            let after =
+                vector_area(mesh, f, |w| if ends.contains(&w) { p } else { mesh.position(w) });
             let (was, is) = (before.length(), after.length());
             if was > 0.0 && !(before.dot(after) > 0.0_f64.max(limit * was * is)) {
                 return (true, shape);

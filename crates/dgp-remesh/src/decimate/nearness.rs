@@ -28,14 +28,19 @@ impl Nearness {
     }
 
     /// Whether all that is carried around `h` stays within `limit` if it collapses to `p`; if so it is handed on.
-    pub(super) fn try_collapse(&mut self, mesh: &Mesh, h: HalfedgeId, p: DVec3, limit: f64) -> bool {
+    pub(super) fn try_collapse(
+        &mut self,
+        mesh: &Mesh,
+        h: HalfedgeId,
+        p: DVec3,
+        limit: f64,
+    ) -> bool {
         let ends = [mesh.from(h), mesh.to(h)];
         let mut faces: Vec<FaceId> = ends.iter().flat_map(|&v| mesh.vertex_faces(v)).collect();
         faces.sort_unstable();
         faces.dedup();
         let is_gone = |f: FaceId| {
-            mesh.degree(f) == 3
-                && ends.iter().all(|&v| mesh.face_vertices(f).any(|w| w == v))
+            mesh.degree(f) == 3 && ends.iter().all(|&v| mesh.face_vertices(f).any(|w| w == v))
         };
         let left: Vec<FaceId> = faces.iter().copied().filter(|&f| !is_gone(f)).collect();
         let at = |v: VertexId| if ends.contains(&v) { p } else { mesh.position(v) };

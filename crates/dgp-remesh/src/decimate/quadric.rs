@@ -17,8 +17,8 @@
 use std::f64::consts::PI;
 
 use dgp_mesh::{
-    Cancelled, Connectivity, DVec3, EdgeId, Editor, FaceId, FaceMap, Mesh, Progress, VertexId, VertexMap, VertexSet,
-    graph::IndexedHeap, measure::bounding_box, parallel,
+    Cancelled, Connectivity, DVec3, EdgeId, Editor, FaceId, FaceMap, Mesh, Progress, VertexId,
+    VertexMap, VertexSet, graph::IndexedHeap, measure::bounding_box, parallel,
 };
 
 use super::{
@@ -27,7 +27,10 @@ use super::{
     report::{DecimationReport, Refusals, StopReason, Target},
     rings::{NONE, RIM, Rings, SHARP, Shared},
 };
-use crate::{Error, quadric::{Quadric, outer}};
+use crate::{
+    Error,
+    quadric::{Quadric, outer},
+};
 
 /// How [`decimate_quadric`] chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -434,7 +437,8 @@ impl State {
 
     /// The best edge from `v` to a vertex of a larger number. Quadrics are fresh.
     fn rank(&self, v: u32) -> (u32, Candidate) {
-        let nothing = Candidate { key: f64::INFINITY, cost: 0.0, weight: 0.0, position: DVec3::ZERO };
+        let nothing =
+            Candidate { key: f64::INFINITY, cost: 0.0, weight: 0.0, position: DVec3::ZERO };
         let mut best = (NONE, nothing);
         self.rings.each_neighbor(v, |w| {
             if self.is_allowed(v, w) {
@@ -685,11 +689,10 @@ impl State {
         let mut editor = Editor::new(mesh);
         for done in &self.log {
             let [from, to] = [done.from, done.to].map(|v| VertexId::new(v as usize));
-            let h = editor.mesh().halfedge_between(from, to).expect("the same edges as in the rings");
+            let h =
+                editor.mesh().halfedge_between(from, to).expect("the same edges as in the rings");
             let position = self.frame.position(editor.mesh(), NONE, done.position);
-            editor
-                .collapse_at(h, position)
-                .expect("the same conditions as in the rings");
+            editor.collapse_at(h, position).expect("the same conditions as in the rings");
         }
         let _ = editor.finish();
     }
@@ -697,7 +700,10 @@ impl State {
 
 fn has_data(mesh: &Mesh) -> bool {
     let data = mesh.attributes();
-    !(data.vertex.is_empty() && data.corner.is_empty() && data.edge.is_empty() && data.face.is_empty())
+    !(data.vertex.is_empty()
+        && data.corner.is_empty()
+        && data.edge.is_empty()
+        && data.face.is_empty())
 }
 
 /// Marks the sides where normals differ by more than `angle`, and seams of data of corners.

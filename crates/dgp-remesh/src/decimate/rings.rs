@@ -68,9 +68,9 @@ impl Rings {
             }
             sides.push(bits);
         }
-        let on_rim = mesh.vertices().map(|v| {
-            mesh.vertex_halfedge(v).is_some_and(|h| mesh.face(h).is_none())
-        });
+        let on_rim = mesh
+            .vertices()
+            .map(|v| mesh.vertex_halfedge(v).is_some_and(|h| mesh.face(h).is_none()));
         let on_rim: Vec<bool> = on_rim.collect();
         let (runs, lists) = listed(mesh.vertex_count(), &faces);
         let (face_count, vertex_count) = (faces.len(), mesh.vertex_count());
@@ -94,7 +94,13 @@ impl Rings {
     #[inline]
     pub(crate) fn corner(&self, f: u32, v: u32) -> usize {
         let [a, b, _] = self.faces[f as usize];
-        if a == v { 0 } else if b == v { 1 } else { 2 }
+        if a == v {
+            0
+        } else if b == v {
+            1
+        } else {
+            2
+        }
     }
 
     /// The corners of `f` after `v`, counterclockwise.
@@ -146,7 +152,14 @@ impl Rings {
     /// Whether the collapse of the edge keeps a manifold of the same topology; `marks` holds for each vertex
     /// when it was last met, `now` is later than all of them.
     #[inline]
-    pub(crate) fn may_collapse(&self, a: u32, b: u32, shared: &Shared, marks: &mut [u32], now: u32) -> bool {
+    pub(crate) fn may_collapse(
+        &self,
+        a: u32,
+        b: u32,
+        shared: &Shared,
+        marks: &mut [u32],
+        now: u32,
+    ) -> bool {
         let rims = (self.on_rim[a as usize], self.on_rim[b as usize]);
         // An edge inside whose ends are both on rims would pinch the surface.
         if shared.count == 0 || shared.count > 2 || (rims == (true, true) && shared.count == 2) {
@@ -232,9 +245,11 @@ impl Rings {
             if gained == 0 {
                 continue;
             }
-            let beyond = self.ring(end).iter().copied().find(|&g| {
-                g != f && self.others(g, end).contains(&apex)
-            });
+            let beyond = self
+                .ring(end)
+                .iter()
+                .copied()
+                .find(|&g| g != f && self.others(g, end).contains(&apex));
             if let Some(g) = beyond {
                 let k = side(self, g, end, apex);
                 self.sides[g as usize] |= gained << k;

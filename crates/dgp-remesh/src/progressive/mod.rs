@@ -27,7 +27,8 @@ pub use geomorph::Geomorph;
 pub use stream::ProgressiveStream;
 
 use dgp_mesh::{
-    DVec3, FaceId, FaceList, FaceMap, IndexedFaceSet, Mesh, Progress, VertexId, VertexMap, VertexSet,
+    DVec3, FaceId, FaceList, FaceMap, IndexedFaceSet, Mesh, Progress, VertexId, VertexMap,
+    VertexSet,
 };
 
 use crate::{

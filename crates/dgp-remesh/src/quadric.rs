@@ -19,8 +19,6 @@
 //!   directions that the quadric leaves free; a quadric is kept relative to an origin of its own, without
 //!   which squares of coordinates drown squares of distances.
 
-mod attribute;
-
 use dgp_mesh::DVec3;
 
 /// Weighted squared distances to planes.
@@ -251,7 +249,9 @@ mod tests {
         // Twelve uniform numbers sum to nearly a normal one.
         let mut state = 7_u64;
         let mut uniform = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
         let mut normal = || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
