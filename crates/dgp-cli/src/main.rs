@@ -30,6 +30,8 @@ fn main() -> ExitCode {
         Command::Repair(command) => command.run(&common),
         Command::Smooth(command) => command.run(&common),
         Command::Subdivide(command) => command.run(&common),
+        Command::Decimate(command) => command.run(&common),
+        Command::Progressive(command) => command.run(&common),
         Command::Edit(command) => command.run(&common),
         Command::Geodesic(command) => command.run(&common),
         Command::Curvature(command) => command.run(&common),

@@ -7,6 +7,7 @@ mod convert;
 mod correspond;
 mod crease;
 mod curvature;
+mod decimate;
 mod demo;
 mod edit;
 mod geodesic;
@@ -15,6 +16,7 @@ mod info;
 mod laplacian;
 mod manual;
 mod partition;
+mod progressive;
 mod render;
 mod repair;
 mod scalars;
@@ -45,6 +47,10 @@ pub(crate) enum Command {
     Smooth(smooth::Smooth),
     /// Refine a coarse cage into a smooth surface, with creases
     Subdivide(subdivide::Subdivide),
+    /// Have fewer faces for the same shape
+    Decimate(decimate::Decimate),
+    /// Keep all levels of detail of a mesh in one file, or take one out
+    Progressive(progressive::Progressive),
     /// Flip, split, collapse, add and remove single elements
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two

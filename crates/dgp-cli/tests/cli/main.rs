@@ -1,5 +1,6 @@
 //! The command as a user meets it: exit codes, messages, reports, pipes, files left behind.
 
+mod decimation;
 mod elements;
 mod folder;
 mod operators;

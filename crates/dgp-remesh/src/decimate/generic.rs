@@ -252,7 +252,7 @@ impl<C: CollapseCost> Run<'_, C> {
 
     fn go(&mut self, progress: Progress<'_>) -> Result<StopReason, Cancelled> {
         for e in (0..self.editor.mesh().edge_count()).map(EdgeId::new) {
-            if e.index() % 4096 == 0 {
+            if e.index().is_multiple_of(4096) {
                 progress.report(0.2 * e.index() as f64 / self.editor.mesh().edge_count() as f64)?;
             }
             self.rank(e);
@@ -260,7 +260,7 @@ impl<C: CollapseCost> Run<'_, C> {
         let progress = progress.part(0.2, 1.0);
         let mut turns = 0_usize;
         while let Some((e, _)) = self.queue.pop() {
-            if turns % 1024 == 0 {
+            if turns.is_multiple_of(1024) {
                 let now = [self.editor.vertex_count(), self.editor.face_count()];
                 progress.report(self.target.progress(self.start, now))?;
             }

@@ -17,13 +17,15 @@
 use std::f64::consts::PI;
 
 use dgp_mesh::{
-    Cancelled, Connectivity, DVec3, EdgeId, Editor, FaceId, FaceMap, Mesh, Progress, VertexId,
-    VertexMap, VertexSet, graph::IndexedHeap, measure::bounding_box, parallel,
+    Cancelled, DVec3, EdgeId, FaceId, Mesh, Progress, VertexId, VertexSet, graph::IndexedHeap,
+    parallel,
 };
 
 use super::{
     edge::{Candidate, Ends, Through, fence},
+    frame::Frame,
     generic::{seam_edges, sharp_edges},
+    options::{Boundary, Memory, Placement, QuadricOptions, Volume},
     report::{DecimationReport, Refusals, StopReason, Target},
     rings::{NONE, RIM, Rings, SHARP, Shared},
 };
@@ -31,87 +33,6 @@ use crate::{
     Error,
     quadric::{Quadric, outer},
 };
-
-/// How [`decimate_quadric`] chooses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadricOptions {
-    /// Where the vertex of a collapsed edge goes.
-    pub placement: Placement,
-    /// Which planes count.
-    pub memory: Memory,
-    /// What happens to rims of holes.
-    pub boundary: Boundary,
-    /// How much planes through rims count against planes of triangles.
-    pub boundary_weight: f64,
-    /// Edges between faces that meet at a larger angle of their normals, in radians, are kept sharp; π for none.
-    pub feature_angle: f64,
-    /// How much planes through sharp edges count.
-    pub feature_weight: f64,
-    /// The largest angle a triangle may turn by in one collapse, in radians.
-    pub largest_turn: f64,
-    /// How strongly points are kept near the middle of the edge where planes leave them free.
-    pub damping: f64,
-    /// Whether vertices go where the volume stays the same.
-    pub volume: Volume,
-    /// How much the squared length of an edge counts, so that among collapses without error short edges come
-    /// first.
-    pub length_weight: f64,
-}
-
-impl Default for QuadricOptions {
-    fn default() -> Self {
-        QuadricOptions {
-            placement: Placement::Optimal,
-            memory: Memory::Memoryless,
-            boundary: Boundary::Weighted,
-            boundary_weight: 1.0,
-            feature_angle: PI,
-            feature_weight: 1.0,
-            largest_turn: 75_f64.to_radians(),
-            damping: 1e-4,
-            length_weight: 1e-9,
-            volume: Volume::Kept,
-        }
-    }
-}
-
-/// Where the vertex of a collapsed edge goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Placement {
-    /// Where the quadric is least.
-    Optimal,
-    /// To the better end: all vertices of the result are ones of the input.
-    Ends,
-}
-
-/// Whether a collapse may change the volume inside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Volume {
-    /// The best point of those that leave the volume as it is: surfaces stay on both sides of the input.
-    Kept,
-    /// The best point: round surfaces grow a little.
-    Free,
-}
-
-/// Which planes count in the error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Memory {
-    /// Those of the present triangles.
-    Memoryless,
-    /// Those of all triangles of the input that were merged.
-    Kept,
-    /// Those of the present triangles, and this much of the input's.
-    Blend(f64),
-}
-
-/// What happens to rims of holes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Boundary {
-    /// They are kept in shape by planes.
-    Weighted,
-    /// Their vertices stay.
-    Kept,
-}
 
 /// Decimates triangles toward `target`; vertices of `fixed` stay where they are.
 ///
@@ -164,81 +85,45 @@ pub(crate) struct Done {
     pub(crate) from: u32,
     pub(crate) to: u32,
     /// The vertex of the input whose position it is, `NONE` if it is a new one.
-    held: u32,
+    pub(super) held: u32,
     pub(crate) position: DVec3,
 }
 
-struct State {
-    options: QuadricOptions,
-    target: Target,
-    rings: Rings,
-    frame: Frame,
+pub(super) struct State {
+    pub(super) options: QuadricOptions,
+    pub(super) target: Target,
+    pub(super) rings: Rings,
+    pub(super) frame: Frame,
     /// The normal of each triangle times the root of its weight.
-    normals: Vec<DVec3>,
+    pub(super) normals: Vec<DVec3>,
     /// Twice the vector areas of triangles, and their sums around each vertex; empty if volumes are free.
-    areas: Vec<DVec3>,
-    around: Vec<DVec3>,
+    pub(super) areas: Vec<DVec3>,
+    pub(super) around: Vec<DVec3>,
     /// The planes of the present triangles around each vertex.
-    through: Vec<Through>,
+    pub(super) through: Vec<Through>,
     /// Planes of the input, relative to the vertex.
-    remembered: Vec<Quadric>,
-    is_stale: Vec<bool>,
-    is_fixed: Vec<bool>,
+    pub(super) remembered: Vec<Quadric>,
+    pub(super) is_stale: Vec<bool>,
+    pub(super) is_fixed: Vec<bool>,
     /// The vertex of the input whose position a vertex has, `NONE` if it is a new one.
-    held: Vec<u32>,
-    parent: Vec<u32>,
-    queue: IndexedHeap<VertexId>,
-    best: Vec<u32>,
-    is_ranked: Vec<bool>,
-    marks: Vec<u32>,
-    now: u32,
-    keeps_log: bool,
-    log: Vec<Done>,
-    collapses: usize,
-    largest_error: f64,
-    refusals: Refusals,
-    start: [usize; 2],
-    stop: StopReason,
+    pub(super) held: Vec<u32>,
+    pub(super) parent: Vec<u32>,
+    pub(super) queue: IndexedHeap<VertexId>,
+    pub(super) best: Vec<u32>,
+    pub(super) is_ranked: Vec<bool>,
+    pub(super) marks: Vec<u32>,
+    pub(super) now: u32,
+    pub(super) keeps_log: bool,
+    pub(super) log: Vec<Done>,
+    pub(super) collapses: usize,
+    pub(super) largest_error: f64,
+    pub(super) refusals: Refusals,
+    pub(super) start: [usize; 2],
+    pub(super) stop: StopReason,
     /// Shares of the present and the remembered planes.
-    shares: [f64; 2],
-    least_cosine: f64,
-    error_limit: f64,
-}
-
-/// Coordinates about the center in units of a power of two, so that squares neither overflow nor vanish.
-#[derive(Clone, Copy)]
-struct Frame {
-    center: DVec3,
-    unit: f64,
-}
-
-impl Frame {
-    fn new(mesh: &Mesh) -> Self {
-        let Some(bounds) = bounding_box(mesh) else {
-            return Frame { center: DVec3::ZERO, unit: 1.0 };
-        };
-        let center = 0.5 * bounds.min + 0.5 * bounds.max;
-        let size = (0.5 * bounds.max - 0.5 * bounds.min).max_element();
-        let unit = if size > 0.0 { 2_f64.powi(exponent(size)) } else { 1.0 };
-        Frame { center, unit }
-    }
-
-    fn inside(&self, p: DVec3) -> DVec3 {
-        (p - self.center) / self.unit
-    }
-
-    /// Where a vertex is that holds the position of `held`, or else is at `p` inside.
-    fn position(&self, mesh: &Mesh, held: u32, p: DVec3) -> DVec3 {
-        match held {
-            NONE => p * self.unit + self.center,
-            held => mesh.position(VertexId::new(held as usize)),
-        }
-    }
-}
-
-/// The exponent of 2 in `x`, kept where its reciprocal is a number too.
-fn exponent(x: f64) -> i32 {
-    (((x.to_bits() >> 52) & 0x7ff) as i32 - 1023).clamp(-1021, 1021)
+    pub(super) shares: [f64; 2],
+    pub(super) least_cosine: f64,
+    pub(super) error_limit: f64,
 }
 
 impl State {
@@ -470,7 +355,7 @@ impl State {
         let mut turns = 0_usize;
         while let Some((id, key)) = self.queue.pop() {
             turns += 1;
-            if turns % 4096 == 0 {
+            if turns.is_multiple_of(4096) {
                 let now = [self.rings.vertex_count, self.rings.face_count];
                 progress.report(self.target.progress(self.start, now))?;
             }
@@ -629,72 +514,6 @@ impl State {
         } else {
             self.queue.set(id, found.key);
         }
-    }
-
-    /// Puts what is left into `mesh`.
-    fn give_back(mut self, mesh: &mut Mesh) -> Result<DecimationReport, Error> {
-        let n = self.parent.len();
-        // Whom a vertex was merged into comes to where that one came in the end.
-        let mut number = vec![NONE; n];
-        let mut kept = Vec::with_capacity(self.rings.vertex_count);
-        for v in 0..n as u32 {
-            if self.parent[v as usize] == v {
-                number[v as usize] = kept.len() as u32;
-                kept.push(v);
-            }
-        }
-        let final_position = |v: u32| {
-            self.frame.position(mesh, self.held[v as usize], self.rings.positions[v as usize])
-        };
-        let positions: Vec<DVec3> = kept.iter().map(|&v| final_position(v)).collect();
-        for v in 0..n as u32 {
-            let mut root = v;
-            while self.parent[root as usize] != root {
-                root = self.parent[root as usize];
-            }
-            let mut walk = v;
-            while self.parent[walk as usize] != root {
-                walk = std::mem::replace(&mut self.parent[walk as usize], root);
-            }
-        }
-        let root = |v: VertexId| number[self.parent[v.index()] as usize] as usize;
-        let vertex_map = VertexMap::from_fn(n, |v| VertexId::new(root(v)));
-        let mut face_map = FaceMap::filled(self.rings.faces.len(), None);
-        for (new, (old, _)) in self.rings.left().enumerate() {
-            face_map[old] = Some(FaceId::new(new));
-        }
-        let report = DecimationReport {
-            vertices: [n, kept.len()],
-            faces: [self.start[1], self.rings.face_count],
-            collapses: self.collapses,
-            largest_error: self.largest_error * self.frame.unit,
-            stop: self.stop,
-            refusals: self.refusals,
-            vertex_map,
-            face_map,
-        };
-        if self.keeps_log {
-            self.replay(mesh);
-            mesh.set_positions(positions.into());
-        } else {
-            let list = self.rings.face_list(|v| VertexId::new(number[v as usize] as usize));
-            let connectivity = Connectivity::from_faces(kept.len(), &list)?;
-            *mesh = Mesh::from_parts(connectivity, positions.into());
-        }
-        Ok(report)
-    }
-
-    /// Does the collapses again where data travel.
-    fn replay(&self, mesh: &mut Mesh) {
-        let mut editor = Editor::new(mesh);
-        for done in &self.log {
-            let [from, to] = [done.from, done.to].map(|v| VertexId::new(v as usize));
-            let h =
-                editor.mesh().halfedge_between(from, to).expect("the same edges as in the rings");
-            let position = self.frame.position(editor.mesh(), NONE, done.position);
-            editor.collapse_at(h, position).expect("the same conditions as in the rings");
-        }
-        let _ = editor.finish();
     }
 }
 

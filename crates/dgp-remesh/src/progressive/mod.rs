@@ -96,11 +96,11 @@ impl ProgressiveMesh {
         // Of each collapse, in its order: corners that change hands, triangles that go, positions.
         let mut corners: Vec<u32> = Vec::new();
         let mut ends = Vec::with_capacity(log.len());
-        let mut gone: Vec<[(u32, [u32; 3]); 2]> = Vec::with_capacity(log.len());
+        let mut gone: Vec<Gone> = Vec::with_capacity(log.len());
         let mut counts = Vec::with_capacity(log.len());
         let mut held = Vec::with_capacity(log.len());
         for (k, done) in log.iter().enumerate() {
-            if k % 4096 == 0 {
+            if k.is_multiple_of(4096) {
                 progress.part(0.8, 1.0).report(k as f64 / log.len() as f64)?;
             }
             let shared = rings.shared(done.from, done.to);
@@ -218,13 +218,16 @@ impl ProgressiveMesh {
     }
 }
 
+/// The triangles that go in a collapse, with their corners.
+type Gone = [(u32, [u32; 3]); 2];
+
 /// Numbers vertices and faces in the order in which they come when the collapses are undone.
 fn ordered(
     mesh: &Mesh,
     rings: &Rings,
     log: &[crate::decimate::quadric::Done],
     (corners, ends): (&[u32], &[usize]),
-    (gone, counts): (&[[(u32, [u32; 3]); 2]], &[u8]),
+    (gone, counts): (&[Gone], &[u8]),
     before: &[DVec3],
 ) -> ProgressiveMesh {
     let mut is_left = vec![true; mesh.vertex_count()];

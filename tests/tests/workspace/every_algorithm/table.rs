@@ -18,7 +18,10 @@ use dgp_mesh::{
 };
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
-use super::{inputs::Input, laplacians::laplacians, outcome::Outcome, subdivisions::subdivisions};
+use super::{
+    decimations::decimations, inputs::Input, laplacians::laplacians, outcome::Outcome,
+    subdivisions::subdivisions,
+};
 
 /// A name and what to run.
 pub(crate) struct Algorithm {
@@ -54,6 +57,7 @@ pub(crate) fn algorithms() -> Vec<Algorithm> {
         smoothing(),
         laplacians(),
         subdivisions(),
+        decimations(),
         pictures_and_files(),
     ]
     .into_iter()

@@ -19,8 +19,6 @@
 //!   directions that the quadric leaves free; a quadric is kept relative to an origin of its own, without
 //!   which squares of coordinates drown squares of distances.
 
-mod attribute;
-
 use dgp_mesh::DVec3;
 
 /// Weighted squared distances to planes.
