@@ -31,6 +31,7 @@ fn main() -> ExitCode {
         Command::Smooth(command) => command.run(&common),
         Command::Subdivide(command) => command.run(&common),
         Command::Decimate(command) => command.run(&common),
+        Command::Fill(command) => command.run(&common),
         Command::Progressive(command) => command.run(&common),
         Command::Edit(command) => command.run(&common),
         Command::Geodesic(command) => command.run(&common),

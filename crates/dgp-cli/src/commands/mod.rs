@@ -10,6 +10,7 @@ mod curvature;
 mod decimate;
 mod demo;
 mod edit;
+mod fill;
 mod geodesic;
 mod heat;
 mod info;
@@ -49,6 +50,8 @@ pub(crate) enum Command {
     Subdivide(subdivide::Subdivide),
     /// Have fewer faces for the same shape
     Decimate(decimate::Decimate),
+    /// Close holes: with few triangles, with small ones, or smoothly
+    Fill(fill::Fill),
     /// Keep all levels of detail of a mesh in one file, or take one out
     Progressive(progressive::Progressive),
     /// Flip, split, collapse, add and remove single elements

@@ -2,6 +2,7 @@
 
 mod decimation;
 mod elements;
+mod filling;
 mod folder;
 mod operators;
 mod spectra;

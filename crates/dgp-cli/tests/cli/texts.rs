@@ -2,13 +2,16 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 24] = [
     "info",
     "check",
     "convert",
     "repair",
     "smooth",
     "subdivide",
+    "decimate",
+    "progressive",
+    "fill",
     "edit",
     "geodesic",
     "curvature",

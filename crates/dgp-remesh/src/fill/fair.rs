@@ -39,7 +39,9 @@ pub(super) fn fair(
             all.push(v);
         }
     };
-    vertices.iter().for_each(|&v| add(v, &mut all));
+    for &v in vertices {
+        add(v, &mut all);
+    }
     let unknown = all.len();
     let mut inner = unknown;
     for ring in 0..2 {
@@ -73,7 +75,9 @@ pub(super) fn fair(
         // The whole patch is a point: nothing is smoother.
         return Ok(());
     }
-    inverse_mass.iter_mut().for_each(|m| *m /= largest);
+    for m in &mut inverse_mass {
+        *m /= largest;
+    }
     progress.report(0.2)?;
     let energy = laplacian.gram(&inverse_mass).map_err(Error::Solve)?;
     let fixed: Vec<u32> = (unknown as u32..all.len() as u32).collect();

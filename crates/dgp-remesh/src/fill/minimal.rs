@@ -49,6 +49,9 @@ pub(super) struct Triangulation {
 /// 1 − cos π.
 const FOLDED: f64 = 2.0;
 
+/// Triangles of corners of the rim, and what is known of all of them.
+type Chosen = (Vec<[u32; 3]>, Cell);
+
 /// What is known of the part of the rim from one corner to another.
 #[derive(Clone, Copy)]
 struct Cell {
@@ -151,7 +154,7 @@ impl Rim<'_> {
         corners: &[u32],
         normals: &[DVec3],
         progress: Progress<'_>,
-    ) -> Result<Option<(Vec<[u32; 3]>, Cell)>, Error> {
+    ) -> Result<Option<Chosen>, Error> {
         let n = corners.len();
         let points: Vec<DVec3> = corners.iter().map(|&i| self.points[i as usize]).collect();
         // What is known of a and c, by a and by c: both are read one after the other.

@@ -2,8 +2,9 @@
 
 use dgp_mesh::{EdgeSet, HalfedgeId, Mesh, Progress, VertexSet, measure::bounding_box};
 use dgp_remesh::{
-    CollapseCost, CurvatureCost, DecimationOptions, LengthCost, Memory, Placement, ProgressiveMesh,
-    QuadricCost, QuadricOptions, Target, decimate, decimate_quadric, seam_edges, sharp_edges,
+    CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost, Memory, Patch,
+    Placement, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate, decimate_quadric,
+    fill_holes, seam_edges, sharp_edges,
 };
 
 use super::{
@@ -42,6 +43,9 @@ pub(crate) fn decimations() -> Vec<Algorithm> {
             let levels = ProgressiveMesh::new(m, Target::Faces(10), &options, p);
             Outcome::of(&levels.map(|levels| levels.to_bytes()))
         }),
+        mesh("fill_holes", |m, p| filled(m, Patch::Cover, p)),
+        mesh("fill_holes refined", |m, p| filled(m, Patch::Refined, p)),
+        mesh("fill_holes fair", |m, p| filled(m, Patch::Fair, p)),
         mesh("sharp_edges, seam_edges", |m, _| Outcome::of(&(sharp_edges(m, 0.5), seam_edges(m)))),
     ]
 }
@@ -49,6 +53,11 @@ pub(crate) fn decimations() -> Vec<Algorithm> {
 fn quadric(input: &Mesh, options: &QuadricOptions, progress: Progress<'_>) -> Outcome {
     let target = Target::Faces(input.face_count() / 3);
     changed(input, |m| decimate_quadric(m, target, &VertexSet::new(), options, progress))
+}
+
+fn filled(input: &Mesh, patch: Patch, progress: Progress<'_>) -> Outcome {
+    let options = FillOptions { patch, ..FillOptions::default() };
+    changed(input, |m| fill_holes(m, &options, progress))
 }
 
 fn any(input: &Mesh, cost: &mut impl CollapseCost, progress: Progress<'_>) -> Outcome {
