@@ -15,6 +15,11 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh/IO.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_policies.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_cost.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_placement.h>
+#include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <CGAL/Weights/utils.h>
 #include <CGAL/boost/graph/IO/polygon_mesh_io.h>
 #include <CGAL/subdivision_method_3.h>
@@ -205,6 +210,60 @@ void repair(Report& report, const Raw& raw, const Call& call) {
     counts(report, mesh);
 }
 
+void write_mesh_raw(const Mesh& mesh, const std::string& path) {
+    Raw out;
+    std::vector<uint32_t> number(mesh.num_vertices());
+    for (const auto v : mesh.vertices()) {
+        number[v] = uint32_t(out.points.size());
+        const Point& p = mesh.point(v);
+        out.points.push_back({p.x(), p.y(), p.z()});
+    }
+    out.starts.push_back(0);
+    for (const auto f : mesh.faces()) {
+        for (const auto v : vertices_around_face(halfedge(f, mesh), mesh)) out.corners.push_back(number[v]);
+        out.starts.push_back(uint32_t(out.corners.size()));
+    }
+    write_raw(path, out);
+}
+
+double border_edges(const Mesh& mesh) {
+    double count = 0;
+    for (const auto e : mesh.edges()) count += is_border(e, mesh);
+    return count;
+}
+
+// Decimates a copy to `--levels` faces; the last one is written. CGAL counts edges.
+void decimate(Report& report, const Raw& raw, const Call& call) {
+    namespace simplification = CGAL::Surface_mesh_simplification;
+    const auto original = built(raw);
+    std::unique_ptr<Mesh> last;
+    report.time_from(
+        call.repeat,
+        [&] {
+            last.reset();
+            last = std::make_unique<Mesh>(*original);
+            return last.get();
+        },
+        [&](Mesh* mesh) {
+            const double edges = 1.5 * call.levels + 0.5 * border_edges(*mesh) * call.levels / double(num_faces(*mesh));
+            const simplification::Count_stop_predicate<Mesh> stop{std::size_t(edges) + 1};
+            if (call.scheme == "lindstrom-turk") {
+                simplification::edge_collapse(*mesh, stop,
+                    CGAL::parameters::get_cost(simplification::LindstromTurk_cost<Mesh>())
+                        .get_placement(simplification::LindstromTurk_placement<Mesh>()));
+            } else if (call.scheme == "garland-heckbert") {
+                simplification::GarlandHeckbert_policies<Mesh, Kernel> policies(*mesh);
+                simplification::edge_collapse(*mesh, stop,
+                    CGAL::parameters::get_cost(policies.get_cost()).get_placement(policies.get_placement()));
+            } else throw std::runtime_error("CGAL has no policy " + call.scheme);
+            return 0;
+        });
+    last->collect_garbage();
+    report.number("vertices", double(last->number_of_vertices()));
+    report.number("faces", double(last->number_of_faces()));
+    if (!call.out.empty()) write_mesh_raw(*last, call.out + ".raw");
+}
+
 // Refines a copy; the last one is written.
 void subdivide(Report& report, const Raw& raw, const Call& call) {
     namespace method = CGAL::Subdivision_method_3;
@@ -229,19 +288,7 @@ void subdivide(Report& report, const Raw& raw, const Call& call) {
     report.number("vertices", double(last->number_of_vertices()));
     report.number("faces", double(last->number_of_faces()));
     if (call.out.empty()) return;
-    Raw out;
-    std::vector<uint32_t> number(last->num_vertices());
-    for (const auto v : last->vertices()) {
-        number[v] = uint32_t(out.points.size());
-        const Point& p = last->point(v);
-        out.points.push_back({p.x(), p.y(), p.z()});
-    }
-    out.starts.push_back(0);
-    for (const auto f : last->faces()) {
-        for (const auto v : vertices_around_face(halfedge(f, *last), *last)) out.corners.push_back(number[v]);
-        out.starts.push_back(uint32_t(out.corners.size()));
-    }
-    write_raw(call.out + ".raw", out);
+    write_mesh_raw(*last, call.out + ".raw");
 }
 
 void rings(Report& report, const Raw& raw, int repeat) {
@@ -356,6 +403,7 @@ int main(int count, char** arguments) {
             const Raw raw = read_raw(call.input);
             if (call.operation == "facts") facts(report, raw, call.out);
             else if (call.operation == "subdivide") subdivide(report, raw, call);
+            else if (call.operation == "decimate") decimate(report, raw, call);
             else if (call.operation == "repair") repair(report, raw, call);
             else if (call.operation == "dijkstra") dijkstra(report, raw, call);
             else if (call.operation == "curvature") curvature(raw, call);

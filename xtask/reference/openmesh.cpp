@@ -4,6 +4,8 @@
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <OpenMesh/Tools/Smoother/JacobiLaplaceSmootherT.hh>
 #include <OpenMesh/Tools/Subdivider/Uniform/CatmullClarkT.hh>
 #include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
@@ -185,6 +187,52 @@ void smooth(Report& report, const Raw& raw, int repeat) {
     report.list("cpu_ms", cpu);
 }
 
+template <class Mesh>
+void write_mesh_raw(const Mesh& mesh, const std::string& path) {
+    Raw out;
+    for (const auto v : mesh.vertices()) {
+        const auto p = mesh.point(v);
+        out.points.push_back({p[0], p[1], p[2]});
+    }
+    out.starts.push_back(0);
+    for (const auto f : mesh.faces()) {
+        for (auto it = mesh.cfv_ccwiter(f); it.is_valid(); ++it) out.corners.push_back(uint32_t(it->idx()));
+        out.starts.push_back(uint32_t(out.corners.size()));
+    }
+    write_raw(path, out);
+}
+
+// Decimates a copy by quadrics to `--levels` faces; the last one is written.
+void decimate(Report& report, const Raw& raw, const Call& call) {
+    const auto original = built<Triangles>(raw);
+    original->request_face_normals();
+    original->request_vertex_status();
+    original->request_edge_status();
+    original->request_face_status();
+    original->update_face_normals();
+    std::unique_ptr<Triangles> last;
+    report.time_from(
+        call.repeat,
+        [&] {
+            last.reset();
+            last = std::make_unique<Triangles>(*original);
+            return last.get();
+        },
+        [&](Triangles* mesh) {
+            OpenMesh::Decimater::DecimaterT<Triangles> decimater(*mesh);
+            OpenMesh::Decimater::ModQuadricT<Triangles>::Handle quadric;
+            decimater.add(quadric);
+            decimater.module(quadric).unset_max_err();
+            if (!decimater.initialize()) throw std::runtime_error("OpenMesh does not decimate it");
+            decimater.decimate_to_faces(0, std::size_t(call.levels));
+            mesh->garbage_collection();
+            return 0;
+        });
+    report.number("vertices", double(last->n_vertices()));
+    report.number("faces", double(last->n_faces()));
+    if (!call.out.empty()) write_mesh_raw(*last, call.out + ".raw");
+}
+
 // Refines a copy; the last one is written.
 template <class Mesh, class Subdivider>
 void refined(Report& report, const Raw& raw, const Call& call) {
@@ -205,17 +253,7 @@ void refined(Report& report, const Raw& raw, const Call& call) {
     report.number("vertices", double(last->n_vertices()));
     report.number("faces", double(last->n_faces()));
     if (call.out.empty()) return;
-    Raw out;
-    for (const auto v : last->vertices()) {
-        const auto p = last->point(v);
-        out.points.push_back({p[0], p[1], p[2]});
-    }
-    out.starts.push_back(0);
-    for (const auto f : last->faces()) {
-        for (auto it = last->cfv_ccwiter(f); it.is_valid(); ++it) out.corners.push_back(uint32_t(it->idx()));
-        out.starts.push_back(uint32_t(out.corners.size()));
-    }
-    write_raw(call.out + ".raw", out);
+    write_mesh_raw(*last, call.out + ".raw");
 }
 
 void subdivide(Report& report, const Raw& raw, const Call& call) {
@@ -289,6 +327,7 @@ int main(int count, char** arguments) {
         else {
             const Raw raw = read_raw(call.input);
             if (call.operation == "subdivide") subdivide(report, raw, call);
+            else if (call.operation == "decimate") decimate(report, raw, call);
             else if (raw.triangles()) run<Triangles>(report, call, raw);
             else run<Polygons>(report, call, raw);
         }

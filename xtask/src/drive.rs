@@ -1,6 +1,7 @@
 //! One operation of ours in a process of its own, by the protocol of the reference drivers, so that
 //! time and memory of peers and of us are measured alike.
 
+mod decimation;
 mod spatial;
 pub(crate) mod subdivision;
 
@@ -131,6 +132,7 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
                 RenderOptions { width: 1200, height: 900, samples: 2, ..RenderOptions::default() };
             time(report, call.repeat, || Ok(render(&scene, &options, Progress::NONE)?))
         }
+        "decimate" | "progressive" => decimation::perform(call, report),
         "subdivide" | "plan-refine" | "plan" | "refine" | "stencils" => {
             subdivision::perform(call, report)
         }

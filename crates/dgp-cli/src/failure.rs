@@ -43,6 +43,10 @@ pub(crate) enum Failure {
         source: dgp::subdiv::Error,
     },
 
+    /// Decimation and levels of detail.
+    #[error("{0}")]
+    Remesh(#[from] dgp::remesh::Error),
+
     /// A crease or a corner of a file is too sharp, or less than smooth.
     #[error("{what} has sharpness {sharpness}, but it must be 0 (smooth) to 10 (sharp for ever)")]
     Sharpness {

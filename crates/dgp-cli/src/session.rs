@@ -75,6 +75,22 @@ impl<'a> Session<'a> {
         Ok(document)
     }
 
+    /// Reads a file that is no mesh of any format; `describe` says what the report tells of it.
+    pub(crate) fn read_file<T>(
+        &mut self,
+        path: &Path,
+        parse: impl FnOnce(&[u8]) -> Result<T, Failure>,
+        describe: impl FnOnce(&T) -> Value,
+    ) -> Result<T, Failure> {
+        let start = Instant::now();
+        let bytes = std::fs::read(path)
+            .map_err(|source| Failure::Text { path: path.to_owned(), source })?;
+        let parsed = parse(&bytes).map_err(|failure| failure.in_file(path))?;
+        self.read += start.elapsed();
+        self.inputs.push(describe(&parsed));
+        Ok(parsed)
+    }
+
     /// Runs the algorithm, timed, with a progress bar.
     pub(crate) fn run<T, E: Into<Failure>>(
         &mut self,

@@ -18,6 +18,7 @@
 //! | remove noise, let heat or curvature flow | [`laplace::smooth`], [`laplace::flow`] |
 //! | know the waves of a shape, cut, compress, match it | [`laplace::spectral`] |
 //! | refine cages into smooth surfaces, with creases | [`subdiv`] |
+//! | have fewer faces, or levels of detail that stream | [`remesh`] |
 //! | solve sparse systems, find eigenpairs | [`sparse`] |
 //! | draw pictures, plot curves | [`view`] |
 //! | see how far a long computation is, and stop it | [`mesh::Progress`] |
@@ -58,6 +59,7 @@
 pub use dgp_io as io;
 pub use dgp_laplace as laplace;
 pub use dgp_mesh as mesh;
+pub use dgp_remesh as remesh;
 pub use dgp_sparse as sparse;
 pub use dgp_subdiv as subdiv;
 pub use dgp_view as view;

@@ -9,16 +9,19 @@ mod convert;
 mod correspond;
 mod crease;
 mod curvature;
+mod decimate;
 mod demo;
 mod distance;
 mod edit;
 mod evaluate;
+mod fill;
 mod geodesic;
 mod heat;
 mod info;
 mod laplacian;
 mod manual;
 mod partition;
+mod progressive;
 mod render;
 mod repair;
 mod scalars;
@@ -54,6 +57,12 @@ pub(crate) enum Command {
     Evaluate(evaluate::Evaluate),
     /// Subdivision as a matrix: written, transposed, applied to poses
     Stencils(stencils::Stencils),
+    /// Have fewer faces for the same shape
+    Decimate(decimate::Decimate),
+    /// Close holes: with few triangles, with small ones, or smoothly
+    Fill(fill::Fill),
+    /// Keep all levels of detail of a mesh in one file, or take one out
+    Progressive(progressive::Progressive),
     /// Flip, split, collapse, add and remove single elements
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two

@@ -1,7 +1,9 @@
 //! The command as a user meets it: exit codes, messages, reports, pipes, files left behind.
 
+mod decimation;
 mod distances;
 mod elements;
+mod filling;
 mod folder;
 mod operators;
 mod spectra;

@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 23] = [
+const COMMANDS: [&str; 28] = [
     "info",
     "check",
     "convert",
@@ -11,6 +11,9 @@ const COMMANDS: [&str; 23] = [
     "subdivide",
     "evaluate",
     "stencils",
+    "decimate",
+    "progressive",
+    "fill",
     "edit",
     "geodesic",
     "curvature",

@@ -97,7 +97,7 @@ fn linear(topology: &Topology, row: usize, stencil: &mut Stencil) {
         stencil.push(row as u32, 1.0);
     } else if row < vertices + edges {
         for h in [2 * (row - vertices), 2 * (row - vertices) + 1] {
-            stencil.push(topology.from[h], 0.5);
+            stencil.push(topology.from(h as u32), 0.5);
         }
     } else {
         let corners = topology.corners((row - vertices - edges) as u32);

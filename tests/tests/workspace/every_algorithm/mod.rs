@@ -1,6 +1,7 @@
 //! What every algorithm promises, tested by name for each line of one table: on any mesh, good or bad,
 //! a valid result or an error; the same bits for any number of threads; an end when it is cancelled.
 
+mod decimations;
 mod inputs;
 mod laplacians;
 mod outcome;

@@ -19,8 +19,8 @@ use dgp_mesh::{
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
 use super::{
-    inputs::Input, laplacians::laplacians, outcome::Outcome, spatial::spatial,
-    subdivisions::subdivisions,
+    decimations::decimations, inputs::Input, laplacians::laplacians, outcome::Outcome,
+    spatial::spatial, subdivisions::subdivisions,
 };
 
 /// A name and what to run.
@@ -58,6 +58,7 @@ pub(crate) fn algorithms() -> Vec<Algorithm> {
         smoothing(),
         laplacians(),
         subdivisions(),
+        decimations(),
         pictures_and_files(),
     ]
     .into_iter()

@@ -1,0 +1,6 @@
+//! Decimation, progressive meshes and holes as callers meet them.
+
+mod any_cost;
+mod holes;
+mod progressive;
+mod quadrics;

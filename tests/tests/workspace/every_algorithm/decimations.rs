@@ -1,0 +1,75 @@
+//! The lines of the table for decimation.
+
+use dgp_mesh::{EdgeSet, HalfedgeId, Mesh, Progress, VertexSet, measure::bounding_box};
+use dgp_remesh::{
+    CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost, Memory, Patch,
+    Placement, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate, decimate_quadric,
+    fill_holes, seam_edges, sharp_edges,
+};
+
+use super::{
+    outcome::Outcome,
+    table::{Algorithm, changed, mesh},
+};
+
+pub(crate) fn decimations() -> Vec<Algorithm> {
+    vec![
+        mesh("decimate_quadric", |m, p| quadric(m, &QuadricOptions::default(), p)),
+        mesh("decimate_quadric at ends", |m, p| {
+            let options =
+                QuadricOptions { placement: Placement::Ends, ..QuadricOptions::default() };
+            quadric(m, &options, p)
+        }),
+        mesh("decimate_quadric with features and memory", |m, p| {
+            let options = QuadricOptions {
+                feature_angle: 0.5,
+                memory: Memory::Blend(0.1),
+                ..QuadricOptions::default()
+            };
+            quadric(m, &options, p)
+        }),
+        mesh("decimate by length", |m, p| any(m, &mut LengthCost, p)),
+        mesh("decimate by curvature", |m, p| any(m, &mut CurvatureCost, p)),
+        mesh("decimate by quadrics", |m, p| any(m, &mut QuadricCost::new(m, 1.0), p)),
+        mesh("decimate by probabilistic quadrics", |m, p| {
+            any(m, &mut QuadricCost::probabilistic(m, 0.01), p)
+        }),
+        mesh("decimate by height", |m, p| {
+            any(m, &mut |m: &Mesh, h: HalfedgeId| m.position(m.from(h)).z, p)
+        }),
+        mesh("decimate within a distance", within),
+        mesh("ProgressiveMesh", |m, p| {
+            let options = QuadricOptions::default();
+            let levels = ProgressiveMesh::new(m, Target::Faces(10), &options, p);
+            Outcome::of(&levels.map(|levels| levels.to_bytes()))
+        }),
+        mesh("fill_holes", |m, p| filled(m, Patch::Cover, p)),
+        mesh("fill_holes refined", |m, p| filled(m, Patch::Refined, p)),
+        mesh("fill_holes fair", |m, p| filled(m, Patch::Fair, p)),
+        mesh("sharp_edges, seam_edges", |m, _| Outcome::of(&(sharp_edges(m, 0.5), seam_edges(m)))),
+    ]
+}
+
+fn quadric(input: &Mesh, options: &QuadricOptions, progress: Progress<'_>) -> Outcome {
+    let target = Target::Faces(input.face_count() / 3);
+    changed(input, |m| decimate_quadric(m, target, &VertexSet::new(), options, progress))
+}
+
+fn filled(input: &Mesh, patch: Patch, progress: Progress<'_>) -> Outcome {
+    let options = FillOptions { patch, ..FillOptions::default() };
+    changed(input, |m| fill_holes(m, &options, progress))
+}
+
+fn any(input: &Mesh, cost: &mut impl CollapseCost, progress: Progress<'_>) -> Outcome {
+    let target = Target::Vertices(input.vertex_count() / 3);
+    let kept = (&VertexSet::new(), &sharp_edges(input, 1.0));
+    let options = DecimationOptions { least_shape: 0.1, ..DecimationOptions::default() };
+    changed(input, |m| decimate(m, target, cost, kept, &options, progress))
+}
+
+fn within(input: &Mesh, progress: Progress<'_>) -> Outcome {
+    let max_distance = 0.01 * bounding_box(input).map_or(0.0, |bounds| bounds.diagonal());
+    let options = DecimationOptions { max_distance, ..DecimationOptions::default() };
+    let kept = (&VertexSet::new(), &EdgeSet::new());
+    changed(input, |m| decimate(m, Target::Faces(0), &mut LengthCost, kept, &options, progress))
+}
