@@ -213,7 +213,7 @@ impl Links<'_> {
         if c >= topology.corner_count() as u32 {
             let face = self.points.cut[c as usize - topology.corner_count()];
             let rim = rim_corner(topology, face).unwrap_or(NONE);
-            return if h % 2 == 0 { 3 * beyond(topology.next(rim)) } else { 3 * rim + 1 };
+            return if h.is_multiple_of(2) { 3 * beyond(topology.next(rim)) } else { 3 * rim + 1 };
         }
         let rim = self.points.cut(topology, topology.face(c));
         if h % 2 == 1 {
