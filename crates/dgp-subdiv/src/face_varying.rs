@@ -296,7 +296,7 @@ fn thirds(
         return Ok((data, Vec::new()));
     }
     let (old, new) = (level(plan.levels() - 1), level(plan.levels()));
-    let halfedges = 0..old.from.len() as u32;
+    let halfedges = 0..2 * old.edge_count() as u32;
     let inner =
         halfedges.map(|h| [old.corner(h), old.corner(h ^ 1)]).filter(|c| !c.contains(&NONE));
     let left_out = data.differing(inner.flat_map(|[c, twin]| across(old, c, twin)));

@@ -193,10 +193,7 @@ impl Stencils {
         let positions: Vec<DVec3> = session
             .run("applying", |_| table.apply(document.set.positions().values()))
             .map_err(|failure| failure.in_file(pose))?;
-        let refined = Mesh::from_parts(
-            plan.connectivity().map_err(|error| Failure::from(error).in_file(pose))?,
-            positions.into(),
-        );
+        let refined = Mesh::from_parts(plan.connectivity(), positions.into());
         let Some(name) = pose.file_name() else {
             let message = format!("--apply {}: standard input has no name", pose.display());
             return Err(Failure::Usage(message));
