@@ -3,6 +3,7 @@
 //! Each face carries the vertices of the input that it stands for. When an edge collapses, those of the faces
 //! around it go to the nearest of the new ones; where the nearest is too far away the collapse is refused.
 //!
+//! - Input: a mesh, the vertices each face carries, and what a collapse would leave.
 //! - Cost: O(vertices carried by the faces around × faces around) a collapse.
 //! - Guarantees: the distance of every vertex of the input from the result is at most the limit.
 //! - Reference: Klein, Liebich, Straßer, "Mesh reduction with error control", Visualization 1996, of which
