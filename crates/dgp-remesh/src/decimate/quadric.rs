@@ -36,7 +36,7 @@ use crate::{
 
 /// Decimates triangles toward `target`; vertices of `fixed` stay where they are.
 ///
-/// Data travel: see [`Editor::collapse_at`]. A cancelled run leaves a valid mesh, decimated part of the way.
+/// Data travel: see [`Editor::collapse_at`](dgp_mesh::Editor::collapse_at). A cancelled run leaves a valid mesh, decimated part of the way.
 ///
 /// Errors: [`Error::NotTriangle`], [`Error::NotFinite`], [`Error::InvalidOption`], [`Error::Cancelled`].
 pub fn decimate_quadric(
