@@ -227,7 +227,10 @@ struct Library {
 
 impl Library {
     fn package() -> Self {
-        Library { name: "OpenMesh (package build)", arguments: vec!["-lOpenMeshCore".into()] }
+        Library {
+            name: "OpenMesh (package build)",
+            arguments: ["-lOpenMeshTools", "-lOpenMeshCore"].map(String::from).into(),
+        }
     }
 }
 
@@ -306,7 +309,9 @@ fn build_openmesh(folder: &Path) -> Outcome<()> {
 
     let objects = folder.join("openmesh");
     fs::create_dir_all(&objects)?;
-    let core = crate::data::files(&source.join("OpenMesh/Core"), &["cc"])?;
+    let mut core = crate::data::files(&source.join("OpenMesh/Core"), &["cc"])?;
+    // The one source that decimation needs of the rest.
+    core.push(source.join("OpenMesh/Tools/Decimater/Observer.cc"));
     let half = core.len().div_ceil(2);
     std::thread::scope(|scope| {
         let workers: Vec<_> = core
