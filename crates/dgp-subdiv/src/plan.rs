@@ -53,9 +53,9 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct RefinementPlan {
     options: RefinementOptions,
-    /// The cage, then each level; without the last one if that is a split of the one before.
+    /// The cage, then each level but the last.
     levels: Vec<Level>,
-    /// The last level of a split, once it is asked for.
+    /// The last level, once it is asked for.
     last: OnceLock<Level>,
     /// The elements of each level.
     counts: Vec<Counts>,
@@ -70,20 +70,50 @@ pub(crate) struct Level {
     parents: Vec<u32>,
 }
 
-impl Level {
-    /// The level after this one.
-    fn split(&self, split: Split) -> Level {
-        let creases = self.creases.refined();
-        Level { topology: split.children(&self.topology), creases, parents: Vec::new() }
-    }
+/// How a level is made of the one before.
+#[derive(Clone, Copy)]
+enum Step {
+    Split(Split),
+    /// √3, by the number of the step.
+    Thirds(usize),
+    DooSabin,
 }
 
-/// How the scheme splits faces, if it does.
-fn split_of(scheme: Scheme) -> Option<Split> {
-    match scheme {
-        Scheme::Loop(_) | Scheme::Butterfly(_) => Some(Split::Triangles),
-        Scheme::CatmullClark | Scheme::Bilinear => Some(Split::Polygons),
-        Scheme::Sqrt3 | Scheme::DooSabin => None,
+impl Step {
+    fn new(scheme: Scheme, step: usize) -> Self {
+        match scheme {
+            Scheme::Loop(_) | Scheme::Butterfly(_) => Step::Split(Split::Triangles),
+            Scheme::CatmullClark | Scheme::Bilinear => Step::Split(Split::Polygons),
+            Scheme::Sqrt3 => Step::Thirds(step),
+            Scheme::DooSabin => Step::DooSabin,
+        }
+    }
+
+    /// The level after this one.
+    fn level(self, Level { topology, creases, .. }: &Level) -> Level {
+        let (topology, parents) = match self {
+            Step::Split(split) => (split.children(topology), Vec::new()),
+            Step::Thirds(step) => (sqrt3::refined(topology, step), Vec::new()),
+            Step::DooSabin => doo_sabin::refined(topology),
+        };
+        Level { topology, creases: creases.refined(), parents }
+    }
+
+    /// How many elements it has, given what was predicted.
+    fn counts(self, parent: &Topology, predicted: Counts) -> Counts {
+        match self {
+            Step::Split(_) => predicted,
+            Step::Thirds(step) => sqrt3::counts(parent, step),
+            Step::DooSabin => doo_sabin::counts(parent),
+        }
+    }
+
+    fn connectivity(self, parent: &Topology) -> Connectivity {
+        match self {
+            Step::Split(split) => split.connectivity(parent),
+            Step::Thirds(step) => sqrt3::connectivity(parent, step),
+            Step::DooSabin => doo_sabin::connectivity(parent),
+        }
     }
 }
 
@@ -120,28 +150,19 @@ impl RefinementPlan {
         let mut done = 0;
         for level in 1..=options.levels {
             done += plan.counts[level].corners;
-            match split_of(options.scheme) {
-                Some(_) if level == options.levels => {}
-                Some(split) => plan.levels.push(plan.levels[level - 1].split(split)),
-                None => {
-                    plan.levels.push(plan.next_level());
-                    plan.counts[level] = plan.levels[level].topology.counts();
-                }
+            let (step, parent) = (plan.step(level), &plan.levels[level - 1]);
+            plan.counts[level] = step.counts(&parent.topology, plan.counts[level]);
+            if level < options.levels {
+                plan.levels.push(step.level(parent));
             }
             progress.report(done as f64 / total.max(1) as f64)?;
         }
         Ok(plan)
     }
 
-    /// The level after the last, unless faces are split.
-    fn next_level(&self) -> Level {
-        let step = self.levels.len() - 1;
-        let Level { topology, creases, .. } = &self.levels[step];
-        let (topology, parents) = match self.options.scheme {
-            Scheme::Sqrt3 => (sqrt3::refined(topology, step), Vec::new()),
-            _ => doo_sabin::refined(topology),
-        };
-        Level { topology, creases: creases.refined(), parents }
+    /// How `level` is made of the one before.
+    fn step(&self, level: usize) -> Step {
+        Step::new(self.options.scheme, level - 1)
     }
 
     /// What it was made with.
@@ -289,18 +310,17 @@ impl RefinementPlan {
     /// # Panics
     /// If there is no such level.
     pub fn faces(&self, level: usize) -> FaceList {
-        match self.split_before(level) {
-            Some((split, parent)) => split.faces(&parent.topology),
-            None => self.levels[level].topology.faces(),
+        match self.unmade(level) {
+            Some((Step::Split(split), parent)) => split.faces(&parent.topology),
+            Some((Step::Thirds(step), parent)) => sqrt3::faces(&parent.topology, step),
+            _ => self.level(level).topology.faces(),
         }
     }
 
-    /// How `level` is made of which one, if it is the last and a split.
-    fn split_before(&self, level: usize) -> Option<(Split, &Level)> {
-        let is_split = level > 0 && level == self.levels.len();
-        split_of(self.options.scheme)
-            .filter(|_| is_split)
-            .map(|split| (split, self.level(level - 1)))
+    /// How `level` is made of which one, if it is the last.
+    fn unmade(&self, level: usize) -> Option<(Step, &Level)> {
+        let is_last = level > 0 && level == self.levels.len();
+        is_last.then(|| (self.step(level), &self.levels[level - 1]))
     }
 
     /// The face of the cage that each face of the last level comes from; of faces that stand for an edge or
@@ -310,12 +330,13 @@ impl RefinementPlan {
             let faces = faces_of_thirds(self);
             return faces.iter().map(|&f| FaceId::new(f as usize)).collect::<Vec<_>>().into();
         }
+        let parents = |step: usize| &self.level(step + 1).parents;
         parallel::map(self.counts[self.levels()].faces as usize, |f: FaceId| {
             let mut face = f.index() as u32;
             for step in (0..self.levels()).rev() {
                 face = match self.options.scheme {
                     Scheme::Loop(_) | Scheme::Butterfly(_) => face / 4,
-                    Scheme::DooSabin => self.levels[step + 1].parents[face as usize],
+                    Scheme::DooSabin => parents(step)[face as usize],
                     // The face of the corner with its number.
                     _ => self.levels[step].topology.face(face),
                 };
@@ -326,8 +347,8 @@ impl RefinementPlan {
 
     /// The connectivity of the last level. Edges have the numbers they have in the plan, which knows them.
     pub fn connectivity(&self) -> Connectivity {
-        match self.split_before(self.levels()) {
-            Some((split, parent)) => split.connectivity(&parent.topology),
+        match self.unmade(self.levels()) {
+            Some((step, parent)) => step.connectivity(&parent.topology),
             None => self.last().topology.connectivity(),
         }
     }
@@ -337,8 +358,8 @@ impl RefinementPlan {
     }
 
     pub(crate) fn level(&self, level: usize) -> &Level {
-        match self.split_before(level) {
-            Some((split, parent)) => self.last.get_or_init(|| parent.split(split)),
+        match self.unmade(level) {
+            Some((step, parent)) => self.last.get_or_init(|| step.level(parent)),
             None => &self.levels[level],
         }
     }

@@ -476,9 +476,14 @@ mod tests {
             // The second step and the fourth cut rims.
             let mut level = Topology::new(&mesh);
             for step in 0..4 {
+                let joined = crate::sqrt3::connectivity(&level, step);
+                let faces = crate::sqrt3::faces(&level, step);
+                let counts = crate::sqrt3::counts(&level, step);
                 level = crate::sqrt3::refined(&level, step);
                 check(&level);
-                assert_eq!(level.connectivity().validate(), Ok(()));
+                assert_eq!(joined.validate(), Ok(()));
+                assert_eq!(joined, level.connectivity());
+                assert_eq!((faces, counts), (level.faces(), level.counts()));
             }
         }
         for mesh in [
@@ -489,9 +494,12 @@ mod tests {
         ] {
             let mut level = Topology::new(&mesh);
             for _ in 0..3 {
+                let joined = crate::doo_sabin::connectivity(&level);
                 let (children, parents) = crate::doo_sabin::refined(&level);
                 check(&children);
-                assert_eq!(children.connectivity().validate(), Ok(()));
+                assert_eq!(joined.validate(), Ok(()));
+                assert_eq!(joined, children.connectivity());
+                assert_eq!(crate::doo_sabin::counts(&level), children.counts());
                 assert_eq!(parents.len(), children.face_count());
                 level = children;
             }

@@ -23,9 +23,10 @@
 
 use std::f64::consts::TAU;
 
-use dgp_mesh::{VertexId, parallel};
+use dgp_mesh::{Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel};
 
 use crate::{
+    Counts,
     masks::{Masks, Means, Stencil, Value},
     primal::COMMON,
     topology::{NONE, Starts, Topology},
@@ -138,6 +139,48 @@ pub(crate) fn refined(topology: &Topology, step: usize) -> Topology {
     }
 }
 
+/// How many elements the next level has.
+pub(crate) fn counts(topology: &Topology, step: usize) -> Counts {
+    let points = Points::new(topology, step);
+    let corners = topology.corner_count();
+    Counts {
+        vertices: (topology.vertex_count() + points.count(topology)) as u64,
+        edges: (topology.edge_count() + corners + points.cut.len()) as u64,
+        corners: 3 * corners as u64,
+        faces: corners as u64,
+    }
+}
+
+/// The faces of the next level.
+pub(crate) fn faces(topology: &Topology, step: usize) -> FaceList {
+    let links = Links { topology, points: Points::new(topology, step) };
+    let vertices = |c| links.vertices(c).map(|v| VertexId::new(v as usize));
+    FaceList::from_corners(map(topology.corner_count(), vertices).into_flattened(), 3)
+}
+
+/// The next level as a mesh, with the numbers that [`refined`] gives.
+pub(crate) fn connectivity(topology: &Topology, step: usize) -> Connectivity {
+    let links = Links { topology, points: Points::new(topology, step) };
+    let vertices = topology.vertex_count() + links.points.count(topology);
+    let halfedge = |h: u32| HalfedgeId::new(h as usize);
+    let face = |side: Side| (side.face != NONE).then(|| FaceId::new(side.face as usize));
+    Connectivity::from_arrays(HalfedgeArrays {
+        prev: links.each_side(|side| halfedge(side.prev)).into(),
+        to: links.each_side(|side| VertexId::new(side.to as usize)).into(),
+        face: links.each_side(face).into(),
+        vertex_halfedge: map(vertices, |v| Some(halfedge(links.start(v)))).into(),
+        face_halfedge: map(topology.corner_count(), |c| halfedge(links.sides(c)[0])).into(),
+    })
+}
+
+/// What a mesh knows of a half-edge.
+struct Side {
+    prev: u32,
+    to: u32,
+    /// [`NONE`] at a hole.
+    face: u32,
+}
+
 /// The numbers of what a step makes.
 struct Links<'a> {
     topology: &'a Topology,
@@ -145,6 +188,98 @@ struct Links<'a> {
 }
 
 impl Links<'_> {
+    /// A value for each half-edge.
+    fn each_side<T: Send>(&self, value: impl Fn(Side) -> T + Sync + Send) -> Vec<T> {
+        let Links { topology, points } = self;
+        let (edges, corners) = (topology.edge_count() as u32, topology.corner_count() as u32);
+        let count = (edges + corners) as usize + points.cut.len();
+        if !points.cut.is_empty() {
+            let side = |h| value(self.side(h));
+            return map(count, |e| [2 * e, 2 * e + 1].map(side)).into_flattened();
+        }
+        let pair = |e: u32| match e.checked_sub(edges) {
+            None => [2 * e, 2 * e + 1].map(|h| value(self.flipped(h))),
+            Some(c) => self.spokes_of(c).map(&value),
+        };
+        map(count, pair).into_flattened()
+    }
+
+    /// A half-edge with the number of one of the level before, where no rim is cut.
+    #[inline]
+    fn flipped(&self, h: u32) -> Side {
+        let topology = self.topology;
+        let point = |c| topology.vertex_count() as u32 + topology.face(c);
+        match [topology.corner(h), topology.corner(h ^ 1)] {
+            [NONE, _] => {
+                let prev = topology.vertex_halfedge[topology.from(h) as usize] ^ 1;
+                Side { prev, to: topology.to(h), face: NONE }
+            }
+            [c, NONE] => Side { prev: self.spoke(c) + 1, to: topology.to(h), face: c },
+            [c, twin] => Side { prev: self.spoke(topology.next(twin)), to: point(c), face: c },
+        }
+    }
+
+    /// The half-edges between the vertex of a corner and the point of its face, where no rim is cut.
+    #[inline]
+    fn spokes_of(&self, c: u32) -> [Side; 2] {
+        let topology = self.topology;
+        let (h, before) = (topology.corner_halfedge[c as usize], topology.prev(c));
+        let arrives = topology.corner_halfedge[before as usize];
+        let point = topology.vertex_count() as u32 + topology.face(c);
+        let out = match topology.corner(arrives ^ 1) {
+            NONE => Side { prev: arrives, to: point, face: before },
+            twin => Side { prev: self.spoke(twin) + 1, to: point, face: twin },
+        };
+        let prev = if topology.corner(h ^ 1) == NONE { self.spoke(topology.next(c)) } else { h };
+        [out, Side { prev, to: topology.vertex(c), face: c }]
+    }
+
+    /// Any half-edge, where rims are cut.
+    fn side(&self, h: u32) -> Side {
+        let Links { topology, points } = self;
+        let corner = self.corner(h);
+        if corner != NONE {
+            let (c, k) = (corner / 3, corner as usize % 3);
+            let (prev, to) = (self.sides(c)[(k + 2) % 3], self.vertices(c)[(k + 1) % 3]);
+            return Side { prev, to, face: c };
+        }
+        // Along the rim, which is on the right: to the second point, to the first, to the end.
+        let c = match h.checked_sub(self.spoke(0)) {
+            None => topology.corner(h ^ 1),
+            Some(spoke) => spoke / 2,
+        };
+        let first = points.of_face(topology, topology.face(c));
+        let (prev, to) = if h < self.spoke(0) {
+            (self.spoke(topology.next(c)), first)
+        } else if h % 2 == 1 {
+            (topology.corner_halfedge[c as usize] ^ 1, topology.vertex(c))
+        } else {
+            let arrives = topology.vertex_halfedge[topology.vertex(c) as usize];
+            (self.spoke(topology.corner(arrives)) + 1, first + 1)
+        };
+        Side { prev, to, face: NONE }
+    }
+
+    /// What a mesh starts the fan of a vertex with.
+    #[inline]
+    fn start(&self, v: u32) -> u32 {
+        let Links { topology, points } = self;
+        let beyond = |h: u32| topology.corner(h ^ 1);
+        if let Some(&first) = topology.vertex_halfedge.get(v as usize) {
+            if beyond(first) != NONE {
+                return self.first(v);
+            }
+            let rim = topology.start(first);
+            return if points.cuts_rims { self.spoke(topology.next(beyond(rim))) } else { rim };
+        }
+        let (face, is_second) = points.face(v - topology.vertex_count() as u32);
+        match points.cut(topology, face) {
+            Some(rim) if is_second => topology.corner_halfedge[rim as usize] ^ 1,
+            Some(rim) => self.spoke(rim) + 1,
+            None => self.first(v),
+        }
+    }
+
     /// The vertices of the child at a corner.
     #[inline]
     fn vertices(&self, c: u32) -> [u32; 3] {
