@@ -30,7 +30,7 @@ use std::{fmt, sync::Arc};
 pub(crate) use diagnose::{component, sums_to_zero};
 pub use symbolic::SymbolicCholesky;
 
-use crate::{Error, Ordering, Progress, SparseMatrix};
+use crate::{Error, Ordering, Progress, SparseMatrix, parallel};
 
 /// How [`Cholesky::new`] factors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -118,8 +118,9 @@ impl Cholesky {
         matrix.check_finite()?;
         progress.report(0.0)?;
         self.scale = power_of_two(matrix.diagonal().into_iter().fold(0.0, f64::max));
-        self.lower = self.symbolic.lower_values(matrix, 1.0 / self.scale);
-        self.norm = matrix.row_norm() / self.scale;
+        let values = || self.symbolic.lower_values(matrix, 1.0 / self.scale);
+        let (lower, norm) = parallel::join(values, || matrix.row_norm() / self.scale);
+        (self.lower, self.norm) = (lower, norm);
         let failed = self.factor().err();
         match self.symbolic.worst_pivot(&self.lower, &self.factor, failed) {
             Some(place) => {

@@ -16,7 +16,10 @@
 //!   equations", 1983; Liu, "The multifrontal method for sparse matrix solution: theory and practice",
 //!   1992.
 
-use std::ops::Range;
+use std::{
+    ops::Range,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
 
 use faer::{
     Accum, MatMut, MatRef, Par, Spec,
@@ -49,7 +52,9 @@ impl SymbolicCholesky {
     /// Sets `factor`, whatever it holds, from the values of the lower triangle. An error is the place of
     /// the first pivot that is not positive.
     pub(super) fn factor_numbers(&self, lower: &[f64], factor: &mut [f64]) -> Result<(), usize> {
-        Numeric { symbolic: self, lower }.forest(self.supernodes().roots(), factor, 0).map(|_| ())
+        let room = Room::default();
+        let numeric = Numeric { symbolic: self, lower, room: &room };
+        numeric.forest(self.supernodes().roots(), factor, 0).map(|_| ())
     }
 }
 
@@ -58,6 +63,37 @@ impl SymbolicCholesky {
 struct Numeric<'a> {
     symbolic: &'a SymbolicCholesky,
     lower: &'a [f64],
+    room: &'a Room,
+}
+
+/// Memory that nobody needs any more: new memory costs the system as much as what is computed in it.
+#[derive(Default)]
+struct Room {
+    updates: Mutex<Vec<Vec<f64>>>,
+    stacks: Mutex<Vec<Vec<f64>>>,
+}
+
+impl Room {
+    /// At least `len` numbers, whatever they are.
+    fn update(&self, len: usize) -> Vec<f64> {
+        let mut free = locked(&self.updates);
+        let fits = (0..free.len()).filter(|&i| free[i].len() >= len);
+        match fits.min_by_key(|&i| free[i].len()) {
+            Some(best) => free.swap_remove(best),
+            None => {
+                drop(free);
+                vec![0.0; len]
+            }
+        }
+    }
+
+    fn stack(&self) -> Vec<f64> {
+        locked(&self.stacks).pop().unwrap_or_default()
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What threads keep from block to block.
@@ -72,7 +108,7 @@ struct Workspace {
 
 impl Numeric<'_> {
     /// Factors subtrees that stand one after the other, of which `factor` starts at entry `offset` of the
-    /// whole; the updates that they leave.
+    /// whole; the updates that they leave, each at the start of memory that may be longer.
     fn forest(
         self,
         roots: &[u32],
@@ -119,13 +155,11 @@ impl Numeric<'_> {
         let (below, panel) = factor.split_at_mut(front);
         let updates = self.forest(children, below, offset)?;
         let rows = self.symbolic.block_rows(root).len();
-        let mut update = vec![0.0; rows * rows];
-        for (j, column) in update.chunks_exact_mut(rows.max(1)).enumerate() {
-            column[j..].fill(0.0);
-        }
+        let mut update = self.room.update(rows * rows);
         let mut workspace = self.workspace(root..root + 1);
-        let updates = children.iter().zip(&updates).map(|(&child, update)| (child, &update[..]));
-        self.front(root, panel, updates, &mut update, &mut workspace)?;
+        let below = children.iter().zip(&updates).map(|(&child, update)| (child, &update[..]));
+        self.front(root, panel, below, &mut update[..rows * rows], &mut workspace)?;
+        locked(&self.room.updates).extend(updates);
         Ok(update)
     }
 
@@ -135,6 +169,7 @@ impl Numeric<'_> {
         let Some((&first, &last)) = roots.first().zip(roots.last()) else { return Ok(Vec::new()) };
         let range = nodes.first_below(first as usize)..last as usize + 1;
         let mut workspace = self.workspace(range.clone());
+        workspace.stack = self.room.stack();
         let mut rest = factor;
         for block in range {
             let (panel, after) = rest.split_at_mut(self.end_of(block) - self.start_of(block));
@@ -146,9 +181,12 @@ impl Numeric<'_> {
         let mut start = 0;
         for &root in roots {
             let rows = self.symbolic.block_rows(root as usize).len();
-            updates.push(workspace.stack[start..start + rows * rows].to_vec());
+            let mut update = self.room.update(rows * rows);
+            update[..rows * rows].copy_from_slice(&workspace.stack[start..start + rows * rows]);
+            updates.push(update);
             start += rows * rows;
         }
+        locked(&self.room.stacks).push(workspace.stack);
         Ok(updates)
     }
 
@@ -196,7 +234,8 @@ impl Numeric<'_> {
         result
     }
 
-    /// Adds up the front of a block and eliminates its columns. `panel` becomes the block of the factor; of `update`, a square, the lower triangle is set.
+    /// Adds up the front of a block and eliminates its columns. `panel` becomes the block of the factor; of
+    /// `update`, a square that may hold anything, the lower triangle is set.
     fn front<'u>(
         self,
         block: usize,

@@ -1,5 +1,7 @@
 //! Forward and backward substitution with the blocks of the factor, and the check of what they give.
 
+use std::ops::Range;
+
 use super::Cholesky;
 use crate::{Error, parallel};
 
@@ -160,17 +162,76 @@ impl Cholesky {
     }
 
     /// L⁻ᵀ L⁻¹ on rows in the order of elimination.
+    ///
+    /// Subtrees know nothing of each other, so those that [`Supernodes::pieces`] lists are shared among threads;
+    /// the blocks above them follow one by one.
+    ///
+    /// [`Supernodes::pieces`]: super::supernodes::Supernodes::pieces
     fn substitute_permuted<const K: usize>(&self, x: &mut [[f64; K]]) {
+        let tree = self.symbolic.supernodes();
+        let mut pieces = self.pieces(x);
+        parallel::map_chunks(&mut pieces, 1, |_, pieces| {
+            pieces.iter_mut().for_each(|piece| self.forward(piece));
+        });
+        let sums: Vec<_> = pieces.into_iter().map(|piece| piece.at_beyond).collect();
+        for (blocks, sums) in tree.pieces().iter().zip(sums) {
+            for (&i, sum) in self.rows_beyond(blocks).iter().zip(sums) {
+                (0..K).for_each(|k| x[i as usize][k] += sum[k]);
+            }
+        }
+        for blocks in tree.above_pieces() {
+            self.forward(&mut Piece::of_all(blocks, x));
+        }
+        for blocks in tree.above_pieces().iter().rev() {
+            self.backward(&mut Piece::of_all(blocks, x));
+        }
+        let known: Vec<Vec<[f64; K]>> = tree
+            .pieces()
+            .iter()
+            .map(|blocks| self.rows_beyond(blocks).iter().map(|&i| x[i as usize]).collect())
+            .collect();
+        let mut pieces = self.pieces(x);
+        for (piece, known) in pieces.iter_mut().zip(known) {
+            piece.at_beyond = known;
+        }
+        parallel::map_chunks(&mut pieces, 1, |_, pieces| {
+            pieces.iter_mut().for_each(|piece| self.backward(piece));
+        });
+    }
+
+    /// The subtrees that are gone through side by side.
+    fn pieces<'a, const K: usize>(&'a self, x: &'a mut [[f64; K]]) -> Vec<Piece<'a, K>> {
         let blocks = self.symbolic.blocks();
-        let mut below = vec![[0.0; K]; self.symbolic.tallest()];
-        for block in 0..blocks.n_supernodes() {
+        let (mut rest, mut done) = (x, 0);
+        let piece = |range: &Range<usize>| {
+            let first = blocks.supernode_begin()[range.start] as usize;
+            let end = blocks.supernode_end()[range.end - 1] as usize;
+            let (x, after) = std::mem::take(&mut rest)[first - done..].split_at_mut(end - first);
+            (rest, done) = (after, end);
+            let beyond = self.rows_beyond(range);
+            let at_beyond = vec![[0.0; K]; beyond.len()];
+            Piece { blocks: range.clone(), first, x, beyond, at_beyond }
+        };
+        self.symbolic.supernodes().pieces().iter().map(piece).collect()
+    }
+
+    /// The rows that a subtree has beyond its own, which are those of its root.
+    fn rows_beyond(&self, blocks: &Range<usize>) -> &[u32] {
+        self.symbolic.block_rows(blocks.end - 1)
+    }
+
+    /// L⁻¹ on the rows of a piece; what it adds to the rows beyond.
+    fn forward<const K: usize>(&self, piece: &mut Piece<'_, K>) {
+        let blocks = self.symbolic.blocks();
+        let mut memory = vec![[0.0; K]; self.symbolic.tallest()];
+        for block in piece.blocks.clone() {
             let (first, values) = self.block(block);
             let pattern = blocks.supernode(block).pattern();
-            let below = &mut below[..pattern.len()];
+            let below = &mut memory[..pattern.len()];
             let columns = blocks.supernode_end()[block] as usize - first;
             let rows = columns + pattern.len();
             below.fill([0.0; K]);
-            let diagonal = &mut x[first..first + columns];
+            let diagonal = &mut piece.x[first - piece.first..][..columns];
             for (j, column) in values.chunks_exact(rows).enumerate() {
                 let root = column[j];
                 diagonal[j].iter_mut().for_each(|x| *x /= root);
@@ -178,20 +239,24 @@ impl Cholesky {
                 subtract(&mut diagonal[j + 1..], &column[j + 1..columns], solved);
                 subtract(below, &column[columns..], solved);
             }
-            for (&i, below) in pattern.iter().zip(&*below) {
-                (0..K).for_each(|k| x[i as usize][k] += below[k]);
-            }
+            piece.each_row(pattern, below, |at, below| {
+                (0..K).for_each(|k| at[k] += below[k]);
+            });
         }
-        for block in (0..blocks.n_supernodes()).rev() {
+    }
+
+    /// L⁻ᵀ on the rows of a piece, given those beyond.
+    fn backward<const K: usize>(&self, piece: &mut Piece<'_, K>) {
+        let blocks = self.symbolic.blocks();
+        let mut memory = vec![[0.0; K]; self.symbolic.tallest()];
+        for block in piece.blocks.clone().rev() {
             let (first, values) = self.block(block);
             let pattern = blocks.supernode(block).pattern();
-            let below = &mut below[..pattern.len()];
+            let below = &mut memory[..pattern.len()];
             let columns = blocks.supernode_end()[block] as usize - first;
             let rows = columns + pattern.len();
-            for (&i, below) in pattern.iter().zip(&mut *below) {
-                *below = x[i as usize];
-            }
-            let diagonal = &mut x[first..first + columns];
+            piece.each_row(pattern, below, |at, below| *below = *at);
+            let diagonal = &mut piece.x[first - piece.first..][..columns];
             for (j, column) in values.chunks_exact(rows).enumerate().rev() {
                 let inside = dot(&diagonal[j + 1..], &column[j + 1..columns]);
                 let outside = dot(below, &column[columns..]);
@@ -209,6 +274,47 @@ impl Cholesky {
         let values = blocks.col_ptr_for_val();
         let values = &self.factor[values[block] as usize..values[block + 1] as usize];
         (blocks.supernode_begin()[block] as usize, values)
+    }
+}
+
+/// Blocks that follow one another, and the rows that they have to do with.
+struct Piece<'a, const K: usize> {
+    blocks: Range<usize>,
+    /// The first of their rows, and these.
+    first: usize,
+    x: &'a mut [[f64; K]],
+    /// The rows beyond, ascending, and what is known of them or to be added to them.
+    beyond: &'a [u32],
+    at_beyond: Vec<[f64; K]>,
+}
+
+impl<'a, const K: usize> Piece<'a, K> {
+    /// Blocks, with all rows.
+    fn of_all(blocks: &Range<usize>, x: &'a mut [[f64; K]]) -> Self {
+        Piece { blocks: blocks.clone(), first: 0, x, beyond: &[], at_beyond: Vec::new() }
+    }
+
+    /// Calls `f` on what stands at each of these rows, ascending, and on the value for it.
+    fn each_row(
+        &mut self,
+        rows: &[u32],
+        values: &mut [[f64; K]],
+        f: impl Fn(&mut [f64; K], &mut [f64; K]),
+    ) {
+        let end = self.first + self.x.len();
+        let inside = rows.partition_point(|&row| (row as usize) < end);
+        let (inside_values, beyond_values) = values.split_at_mut(inside);
+        for (&row, value) in rows[..inside].iter().zip(inside_values) {
+            f(&mut self.x[row as usize - self.first], value);
+        }
+        let Some(&first) = rows.get(inside) else { return };
+        let mut at = self.beyond.partition_point(|&row| row < first);
+        for (&row, value) in rows[inside..].iter().zip(beyond_values) {
+            while self.beyond[at] < row {
+                at += 1;
+            }
+            f(&mut self.at_beyond[at], value);
+        }
     }
 }
 

@@ -1,8 +1,17 @@
 //! The tree of the blocks: whose update goes where.
 
+use std::ops::Range;
+
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
 use crate::order::NONE;
+
+/// Subtrees with less than the first and more than the second part of the entries of the factor are pieces for
+/// a thread that solves.
+const PIECE: [usize; 2] = [8, 256];
+
+/// Factors with fewer entries are solved with by one thread: half a millisecond.
+const SMALL: usize = 500_000;
 
 /// The tree of the blocks, which are numbered depth first.
 #[derive(Debug)]
@@ -15,6 +24,8 @@ pub(super) struct Supernodes {
     first: Vec<u32>,
     /// Operations of the subtree of each.
     work: Vec<f64>,
+    pieces: Vec<Range<usize>>,
+    above: Vec<Range<usize>>,
 }
 
 impl Supernodes {
@@ -50,7 +61,35 @@ impl Supernodes {
             children[next[parent as usize] as usize] = block as u32;
             next[parent as usize] += 1;
         }
-        Supernodes { starts, children, first, work }
+        let (pieces, above) = (Vec::new(), Vec::new());
+        let mut tree = Supernodes { starts, children, first, work, pieces, above };
+        tree.divide(blocks);
+        tree
+    }
+
+    /// Finds the pieces.
+    fn divide(&mut self, blocks: &SymbolicSupernodalCholesky<u32>) {
+        let ends = blocks.col_ptr_for_val();
+        let all = blocks.len_val();
+        let [most, least] = PIECE.map(|part| all / part);
+        let entries = |blocks: &Range<usize>| (ends[blocks.end] - ends[blocks.start]) as usize;
+        let mut subtrees = if all < SMALL { Vec::new() } else { self.roots().to_vec() };
+        while let Some(root) = subtrees.pop() {
+            let subtree = self.first_below(root as usize)..root as usize + 1;
+            match entries(&subtree) {
+                some if some > most => subtrees.extend(self.children(root as usize)),
+                some if some >= least => self.pieces.push(subtree),
+                _ => {}
+            }
+        }
+        self.pieces.sort_by_key(|piece| piece.start);
+        let mut begun = 0;
+        for piece in &self.pieces {
+            self.above.extend((begun < piece.start).then_some(begun..piece.start));
+            begun = piece.end;
+        }
+        let count = blocks.n_supernodes();
+        self.above.extend((begun < count).then_some(begun..count));
     }
 
     /// The blocks whose update goes to this one, ascending.
@@ -66,6 +105,16 @@ impl Supernodes {
     /// The first block of a subtree, which ends with its root.
     pub(super) fn first_below(&self, block: usize) -> usize {
         self.first[block] as usize
+    }
+
+    /// Subtrees that can be gone through side by side when solving, ascending.
+    pub(super) fn pieces(&self) -> &[Range<usize>] {
+        &self.pieces
+    }
+
+    /// The blocks that are in none of them, ascending.
+    pub(super) fn above_pieces(&self) -> &[Range<usize>] {
+        &self.above
     }
 
     /// The operations of a subtree.

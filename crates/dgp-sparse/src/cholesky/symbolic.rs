@@ -52,14 +52,18 @@ impl SymbolicCholesky {
         options: &CholeskyOptions,
         progress: Progress<'_>,
     ) -> Result<SymbolicCholesky, Error> {
-        matrix.check_symmetric()?;
-        // A diagonal entry that is not stored is a zero that cannot be positive.
-        if let Some(row) =
-            (0..matrix.rows()).find(|&i| matrix.column(i).0.binary_search(&(i as u32)).is_err())
-        {
-            return Err(Error::NotPositiveDefinite { row, pivot: 0.0, diagonal: 0.0 });
-        }
-        let graph = Graph::of(matrix);
+        matrix.check_square()?;
+        let check = || {
+            matrix.check_symmetric()?;
+            // A diagonal entry that is not stored is a zero that cannot be positive.
+            let stored = |i: usize| matrix.column(i).0.binary_search(&(i as u32)).is_ok();
+            match (0..matrix.rows()).find(|&i| !stored(i)) {
+                Some(row) => Err(Error::NotPositiveDefinite { row, pivot: 0.0, diagonal: 0.0 }),
+                None => Ok(()),
+            }
+        };
+        let (checked, graph) = parallel::join(check, || Graph::of(matrix));
+        checked?;
         let order = order(&graph, &options.ordering, progress.part(0.0, 0.8))?;
         progress.report(0.8)?;
         let tree = Tree::new(&graph, &order);

@@ -30,21 +30,24 @@ pub(crate) struct Tree {
 impl Tree {
     /// The tree of `graph` eliminated in `order`, which is changed to an equivalent one.
     pub(crate) fn new(graph: &Graph, order: &[u32]) -> Tree {
+        // What is eliminated one after the other lies one after the other from here on.
+        let sorted = graph.permuted(order, &places(order));
         let mut tree = Tree {
-            order: order.to_vec(),
+            order: (0..order.len() as u32).collect(),
             place: Vec::new(),
-            parent: Vec::new(),
+            parent: parents(&sorted),
             counts: Vec::new(),
         };
-        tree.place = places(&tree.order);
-        tree.parent = parents(graph, &tree);
         tree.renumber(|_| 0);
-        tree.counts = column_counts(graph, &tree);
+        tree.place = places(&tree.order);
+        tree.counts = column_counts(&sorted, &tree);
         // Of several children the one with the longest column comes last, next to its parent: those
         // two are most likely to be merged into one block.
         let counts = std::mem::take(&mut tree.counts);
         let renumbering = tree.renumber(|k| counts[k]);
         tree.counts = renumbering.iter().map(|&old| counts[old as usize]).collect();
+        tree.order.iter_mut().for_each(|row| *row = order[*row as usize]);
+        tree.place = places(&tree.order);
         tree
     }
 
@@ -64,7 +67,6 @@ impl Tree {
         let old_of_new = postorder(&self.parent, key);
         let new_of_old = places(&old_of_new);
         self.order = old_of_new.iter().map(|&old| self.order[old as usize]).collect();
-        self.place = places(&self.order);
         let parent = |&old: &u32| match self.parent[old as usize] {
             NONE => NONE,
             parent => new_of_old[parent as usize],
@@ -83,14 +85,14 @@ fn places(order: &[u32]) -> Vec<u32> {
     place
 }
 
-/// Liu's algorithm with path compression.
-fn parents(graph: &Graph, tree: &Tree) -> Vec<u32> {
+/// Liu's algorithm with path compression, for a graph that is eliminated as it is numbered.
+fn parents(graph: &Graph) -> Vec<u32> {
     let n = graph.len();
     let mut parent = vec![NONE; n];
     let mut ancestor = vec![NONE; n];
     for k in 0..n as u32 {
-        for &w in graph.neighbors(tree.order[k as usize] as usize) {
-            let mut i = tree.place[w as usize];
+        for &w in graph.neighbors(k as usize) {
+            let mut i = w;
             while i < k {
                 let next = ancestor[i as usize];
                 if next == k {

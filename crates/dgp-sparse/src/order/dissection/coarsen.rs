@@ -3,11 +3,17 @@
 //! A cluster starts with a vertex that is in none and takes up to three more, each time the one with
 //! most edges to the cluster, so that clusters are round. What finds nobody joins a neighbor's cluster.
 
+use std::ops::Range;
+
 use super::separator::Local;
 use crate::{
     Error, Progress,
     order::{Graph, NONE},
+    parallel,
 };
+
+/// Clusters that one task contracts.
+const CHUNK: usize = 16_384;
 
 /// With this many vertices one cut is found at once.
 const FEW: usize = 160;
@@ -126,7 +132,7 @@ pub(super) fn coarsen<'a>(
 /// The cluster of each vertex, of about `size` vertices each, and the graph of the clusters; `None` when
 /// clustering has come to an end. The first cluster is the one of vertex `start`.
 pub(super) fn cluster(
-    fine: &impl Weighted,
+    fine: &(impl Weighted + Sync),
     size: usize,
     start: usize,
 ) -> Option<(Vec<u32>, Local)> {
@@ -211,7 +217,7 @@ fn neighbor_cluster(
 }
 
 /// The graph whose vertices are the clusters.
-fn contract(fine: &impl Weighted, cluster: &[u32], count: usize) -> Local {
+fn contract(fine: &(impl Weighted + Sync), cluster: &[u32], count: usize) -> Local {
     let mut starts = vec![0_u32; count + 1];
     for &c in cluster {
         starts[c as usize + 1] += 1;
@@ -223,17 +229,39 @@ fn contract(fine: &impl Weighted, cluster: &[u32], count: usize) -> Local {
         members[next[c as usize] as usize] = v as u32;
         next[c as usize] += 1;
     }
-    let mut coarse_starts = Vec::with_capacity(count + 1);
-    coarse_starts.push(0_u32);
-    let mut neighbors: Vec<u32> = Vec::with_capacity(count * 7);
-    let mut edge_weights: Vec<u32> = Vec::with_capacity(count * 7);
-    let mut weights = Vec::with_capacity(count);
+    let mut ranges: Vec<Range<usize>> =
+        (0..count).step_by(CHUNK).map(|first| first..(first + CHUNK).min(count)).collect();
+    let lists = parallel::map_chunks(&mut ranges, 1, |_, range| {
+        let of = |c: usize| &members[starts[c] as usize..starts[c + 1] as usize];
+        contract_some(fine, cluster, range[0].clone(), count, of)
+    });
+    let mut coarse = Local { starts: vec![0], free: count, ..Local::default() };
+    for list in lists {
+        let before = coarse.neighbors.len() as u32;
+        coarse.starts.extend(list.starts.iter().map(|end| before + end));
+        coarse.neighbors.extend(list.neighbors);
+        coarse.weights.extend(list.weights);
+        coarse.edge_weights.extend(list.edge_weights);
+    }
+    coarse
+}
+
+/// Weights and neighbors of some of the clusters, of which `of` gives the members; `starts` are the ends.
+fn contract_some<'a>(
+    fine: &impl Weighted,
+    cluster: &[u32],
+    range: Range<usize>,
+    count: usize,
+    of: impl Fn(usize) -> &'a [u32],
+) -> Local {
+    let mut list = Local::default();
     // Where the edge to each cluster stands, if it is at least the start of the current list.
     let mut place = vec![0_u32; count];
-    for c in 0..count {
+    for c in range {
+        let Local { neighbors, edge_weights, .. } = &mut list;
         let start = neighbors.len();
         let mut weight = 0_u32;
-        for &v in &members[starts[c] as usize..starts[c + 1] as usize] {
+        for &v in of(c) {
             weight += fine.weight(v as usize);
             for (w, bond) in fine.edges(v as usize) {
                 let other = cluster[w as usize];
@@ -250,8 +278,8 @@ fn contract(fine: &impl Weighted, cluster: &[u32], count: usize) -> Local {
                 }
             }
         }
-        weights.push(weight);
-        coarse_starts.push(neighbors.len() as u32);
+        list.weights.push(weight);
+        list.starts.push(list.neighbors.len() as u32);
     }
-    Local { starts: coarse_starts, neighbors, weights, edge_weights, free: count }
+    list
 }
