@@ -201,13 +201,7 @@ impl Nodes {
                 if distance > limit || !node.has(i) {
                     continue;
                 }
-                // The nearest on top.
-                let mut place = waiting;
-                while place > bottom && stack[place - 1].0 < distance {
-                    stack[place] = stack[place - 1];
-                    place -= 1;
-                }
-                stack[place] = (distance, node.first[i], node.count[i]);
+                insert(&mut stack[bottom..=waiting], (distance, node.first[i], node.count[i]));
                 waiting += 1;
             }
         }
@@ -242,12 +236,7 @@ impl Nodes {
                 if distance > leave[i] * SLACK || distance > limit {
                     continue;
                 }
-                let mut place = waiting;
-                while place > bottom && stack[place - 1].0 < distance {
-                    stack[place] = stack[place - 1];
-                    place -= 1;
-                }
-                stack[place] = (distance, node.first[i], node.count[i]);
+                insert(&mut stack[bottom..=waiting], (distance, node.first[i], node.count[i]));
                 waiting += 1;
             }
         }
@@ -286,4 +275,15 @@ impl Nodes {
             }
         }
     }
+}
+
+/// Puts an entry among those before the last place, which are sorted: the nearest is last.
+#[inline]
+fn insert<T: Copy + PartialOrd>(stack: &mut [(T, u32, u32)], entry: (T, u32, u32)) {
+    let mut place = stack.len() - 1;
+    while place > 0 && stack[place - 1].0 < entry.0 {
+        stack[place] = stack[place - 1];
+        place -= 1;
+    }
+    stack[place] = entry;
 }

@@ -9,7 +9,7 @@ use super::{
     regions::Regions,
     separator::{CUT, Cut, Improver, Local},
 };
-use crate::order::NONE;
+use crate::{order::NONE, parallel};
 
 /// How far from the cut vertices take part; the last of these rings stays fixed.
 const RINGS: usize = 2;
@@ -17,23 +17,38 @@ const RINGS: usize = 2;
 /// How often each cut is improved, at most.
 const PASSES: usize = 3;
 
-/// Improves all cuts of a level.
+/// On levels of more vertices cuts are improved by several bands side by side.
+const SMALL: usize = 16_384;
+
+/// How many these are.
+const BANDS: usize = 4;
+
+/// Improves all cuts of a level. Those at the same depth of the tree know nothing of each other: they are
+/// shared among threads.
 pub(super) fn refine(level: &Level<'_>, label: &mut [u32], regions: &mut Regions) {
     let (starts, members) = regions.members(label);
+    let of = |region: u32| {
+        &members[starts[region as usize] as usize..starts[region as usize + 1] as usize]
+    };
     let mut joined: Vec<Vec<u32>> = vec![Vec::new(); regions.len()];
-    let mut band = Band::default();
-    band.local.resize(level.len(), NONE);
-    for region in 0..regions.len() as u32 {
-        if regions.is_block(region) {
-            continue;
+    let count = if level.len() < SMALL { 1 } else { BANDS };
+    let mut bands: Vec<Band> = Vec::new();
+    bands.resize_with(count, || Band { local: vec![NONE; level.len()], ..Band::default() });
+    for cuts in regions.cuts_by_depth() {
+        let mut loads = vec![0; count];
+        for region in cuts {
+            let least = (0..count).min_by_key(|&i| loads[i]).unwrap_or(0);
+            loads[least] += of(region).len() + joined[region as usize].len();
+            bands[least].cuts.push(region);
         }
-        let at = region as usize;
-        let members = &members[starts[at] as usize..starts[at + 1] as usize];
-        let joining = std::mem::take(&mut joined[at]);
-        band.collect(level, label, regions, region, members.iter().chain(&joining));
-        let before = band.cut.side.clone();
-        band.improver.improve(&band.graph, &mut band.cut, PASSES);
-        band.apply(level, label, regions, region, &before, &mut joined);
+        let (now, tree) = (&*label, &*regions);
+        parallel::map_chunks(&mut bands, 1, |_, bands| {
+            let members = |region| of(region).iter().chain(&joined[region as usize]);
+            bands.iter_mut().for_each(|band| band.improve(level, now, tree, members));
+        });
+        for change in bands.iter_mut().flat_map(|band| band.changes.drain(..)) {
+            change.apply(level, label, regions, &mut joined);
+        }
     }
 }
 
@@ -46,9 +61,39 @@ struct Band {
     /// The vertices of the band, and the number of each vertex in it.
     vertices: Vec<u32>,
     local: Vec<u32>,
+    /// The regions whose cuts are to be improved, and what was found.
+    cuts: Vec<u32>,
+    changes: Vec<Change>,
+}
+
+/// Vertices that change sides at a cut, with the side before and after.
+struct Change {
+    region: u32,
+    vertices: Vec<(u32, u8, u8)>,
 }
 
 impl Band {
+    /// Improves the cuts listed, of which `members` gives the vertices and perhaps others.
+    fn improve<'a, I: Iterator<Item = &'a u32>>(
+        &mut self,
+        level: &Level<'_>,
+        label: &[u32],
+        regions: &Regions,
+        members: impl Fn(u32) -> I,
+    ) {
+        for region in std::mem::take(&mut self.cuts) {
+            self.collect(level, label, regions, region, members(region));
+            let before = self.cut.side.clone();
+            self.improver.improve(&self.graph, &mut self.cut, PASSES);
+            for &v in &self.vertices {
+                self.local[v as usize] = NONE;
+            }
+            let marks = before.iter().zip(&self.cut.side);
+            let all = self.vertices.iter().zip(marks).map(|(&v, (&old, &new))| (v, old, new));
+            self.changes.push(Change { region, vertices: all.filter(|c| c.1 != c.2).collect() });
+        }
+    }
+
     fn collect<'a>(
         &mut self,
         level: &Level<'_>,
@@ -97,34 +142,30 @@ impl Band {
         self.cut.weight = [parts[0], parts[1], cut];
         self.cut.expense = self.cut.expense_of(graph);
     }
+}
 
+impl Change {
     /// Gives new labels to what changed.
     fn apply(
-        &mut self,
+        &self,
         level: &Level<'_>,
         label: &mut [u32],
         regions: &mut Regions,
-        region: u32,
-        before: &[u8],
         joined: &mut [Vec<u32>],
     ) {
-        for &v in &self.vertices {
-            self.local[v as usize] = NONE;
-        }
-        let changed = || (0..before.len()).filter(|&i| before[i] != self.cut.side[i]);
+        let Change { region, vertices } = self;
         // First all labels that are no longer true, so that what leaves the cut sees only what stays.
-        for i in changed().filter(|&i| before[i] != CUT) {
-            let v = self.vertices[i] as usize;
-            let old = std::mem::replace(&mut label[v], region);
-            regions.transfer(region, old, region, u64::from(level.weight(v)));
+        for &(v, ..) in vertices.iter().filter(|&&(_, before, _)| before != CUT) {
+            let old = std::mem::replace(&mut label[v as usize], *region);
+            regions.transfer(*region, old, *region, u64::from(level.weight(v as usize)));
         }
-        for i in changed().filter(|&i| self.cut.side[i] != CUT) {
-            let v = self.vertices[i] as usize;
-            let part = regions.parts(region)[usize::from(self.cut.side[i])];
-            label[v] = lowest(level, label, regions, part, v);
-            regions.transfer(region, region, label[v], u64::from(level.weight(v)));
-            if !regions.is_block(label[v]) {
-                joined[label[v] as usize].push(v as u32);
+        for &(v, _, after) in vertices.iter().filter(|&&(_, _, after)| after != CUT) {
+            let part = regions.parts(*region)[usize::from(after)];
+            let new = lowest(level, label, regions, part, v as usize);
+            label[v as usize] = new;
+            regions.transfer(*region, *region, new, u64::from(level.weight(v as usize)));
+            if !regions.is_block(new) {
+                joined[new as usize].push(v);
             }
         }
     }

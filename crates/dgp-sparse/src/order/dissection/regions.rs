@@ -100,6 +100,19 @@ impl Regions {
         }
     }
 
+    /// The regions that were cut, by depth.
+    pub(super) fn cuts_by_depth(&self) -> Vec<Vec<u32>> {
+        let mut depths: Vec<Vec<u32>> = Vec::new();
+        for region in (0..self.len() as u32).filter(|&region| !self.is_block(region)) {
+            let depth = usize::from(self.regions[region as usize].depth);
+            if depths.len() <= depth {
+                depths.resize(depth + 1, Vec::new());
+            }
+            depths[depth].push(region);
+        }
+        depths
+    }
+
     /// Where the vertices with each label start in the list that follows, and that list.
     pub(super) fn members(&self, label: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let mut starts = vec![0_u32; self.len() + 1];
