@@ -14,11 +14,10 @@
 //! - Reference: Lévy, Petitjean, Ray and Maillot, "Least squares conformal maps for automatic texture atlas
 //!   generation", 2002; Desbrun, Meyer and Alliez, "Intrinsic parameterizations of surface meshes", 2002.
 
-use dgp_laplace::laplacian::cotangent_laplacian;
-use dgp_mesh::{DVec2, Mesh, Progress, VertexId, VertexMap};
+use dgp_mesh::{DVec2, Mesh, Progress, VertexId, VertexMap, measure::cotangent_weights};
 use dgp_sparse::{CholeskyOptions, FixedSystem, SparseMatrix};
 
-use crate::{Error, disk_boundary, error::with_progress};
+use crate::{Error, disk_boundary, error::with_progress, fixed::from_edges};
 
 /// A vertex that is held, and where.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +72,7 @@ pub fn least_squares_conformal(
 
 /// The matrix A with E(u) = ½ uᵀ A u, all first coordinates before all second ones.
 fn conformal_energy(mesh: &Mesh) -> Result<SparseMatrix, Error> {
-    let laplacian = cotangent_laplacian(mesh)?;
+    let laplacian = from_edges(mesh, &cotangent_weights(mesh)?)?;
     let n = mesh.vertex_count() as u32;
     let mut triplets = Vec::with_capacity(2 * laplacian.entries() + 4 * 64);
     for (i, j, value) in laplacian.triplets() {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use dgp_mesh::{Cancelled, FaceId, Progress, VertexId};
+use dgp_mesh::{Cancelled, EdgeId, FaceId, Progress, VertexId};
 
 /// Why a function of this crate gave no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -15,10 +15,6 @@ pub enum Error {
     /// The mesh is not what is needed.
     #[error(transparent)]
     Mesh(#[from] dgp_mesh::Error),
-
-    /// Weights could not be made.
-    #[error(transparent)]
-    Weights(dgp_laplace::Error),
 
     /// A system could not be solved.
     #[error(transparent)]
@@ -106,22 +102,19 @@ pub enum Error {
         face: FaceId,
     },
 
+    /// The ends of an edge are at one point, or nearly so.
+    #[error("{edge} is too short to have a weight; weld its ends or remesh")]
+    NoWeight {
+        /// The first such edge.
+        edge: EdgeId,
+    },
+
     /// Fewer than two vertices are held, or two of them at one place.
     #[error("{problem}; hold two different vertices at two different places")]
     Pins {
         /// What is wrong with the pins.
         problem: &'static str,
     },
-}
-
-impl From<dgp_laplace::Error> for Error {
-    fn from(error: dgp_laplace::Error) -> Self {
-        match error {
-            dgp_laplace::Error::Cancelled(cancelled) => Error::Cancelled(cancelled),
-            dgp_laplace::Error::Mesh(error) => Error::Mesh(error),
-            error => Error::Weights(error),
-        }
-    }
 }
 
 impl From<dgp_sparse::Error> for Error {

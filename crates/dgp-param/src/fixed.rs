@@ -9,7 +9,9 @@
 //! | uniform (Tutte) | 1 | never folds |
 //! | mean value (Floater) | (tan γ/2 + tan δ/2)/‖p_i − p_j‖ | never folds |
 //! | harmonic (Eck) | (cot α + cot β)/2 | may fold where α + β > π |
-//! | harmonic, intrinsic Delaunay | the same on the Delaunay triangulation of the surface | the harmonic map itself, inside of which no weight is negative; faces of the mesh may still fold |
+//!
+//! [`map_with_laplacian`] takes any other matrix, such as that of the intrinsic Delaunay triangulation, inside of
+//! which no weight is negative.
 //!
 //! - Input: triangles (any polygons for uniform and mean value weights), a disk or a disk with holes whose rims
 //!   are free.
@@ -18,14 +20,12 @@
 //!   positive weights and a convex outline no face folds over (Tutte, Floater), unless all its corners come to
 //!   lie on one side of the outline.
 //! - Reference: Tutte, "How to draw a graph", 1963; Eck et al., "Multiresolution analysis of arbitrary
-//!   meshes", 1995; Floater, "Mean value coordinates", 2003; Bobenko and Springborn, "A discrete Laplace–Beltrami
-//!   operator for simplicial surfaces", 2007.
+//!   meshes", 1995; Floater, "Mean value coordinates", 2003.
 
-use dgp_laplace::{
-    intrinsic::{IntrinsicOptions, intrinsic_delaunay},
-    laplacian::{cotangent_laplacian, mean_value_laplacian, uniform_laplacian},
+use dgp_mesh::{
+    DVec2, EdgeMap, HalfedgeId, HalfedgeMap, Mesh, Progress, VertexId, VertexMap,
+    measure::{cotangent_weights, edge_lengths},
 };
-use dgp_mesh::{DVec2, Mesh, Progress, VertexId, VertexMap};
 use dgp_sparse::{CholeskyOptions, FixedSystem, Lu, SparseMatrix};
 
 use crate::{Error, error::with_progress};
@@ -38,8 +38,6 @@ pub enum Weights {
     Uniform,
     /// Cotangents (Eck et al. 1995): least stretched on average, may fold where triangles are obtuse.
     Harmonic,
-    /// Cotangents of the intrinsic Delaunay triangulation: none is negative inside.
-    IntrinsicHarmonic,
     /// Tangents of half angles (Floater 2003): never folds, nearly harmonic.
     #[default]
     MeanValue,
@@ -51,7 +49,7 @@ pub enum Weights {
 /// [convex outline](crate::convex_boundary) uniform and mean value weights never fold a face.
 ///
 /// Errors: [`Error::WrongLength`]; [`dgp_mesh::Error::NotTriangle`] in [`Error::Mesh`] for harmonic
-/// weights; [`Error::Weights`] where edges have no length; [`Error::Solve`] where a piece has no vertex
+/// weights; [`Error::NoWeight`] where edges have no length; [`Error::Solve`] where a piece has no vertex
 /// that is held; [`Error::Cancelled`].
 pub fn map_to_boundary(
     mesh: &Mesh,
@@ -60,25 +58,69 @@ pub fn map_to_boundary(
     weights: Weights,
     progress: Progress<'_>,
 ) -> Result<VertexMap<DVec2>, Error> {
+    progress.report(0.0)?;
+    let laplacian = match weights {
+        Weights::Uniform => from_edges(mesh, &vec![1.0; mesh.edge_count()].into())?,
+        Weights::Harmonic => from_edges(mesh, &cotangent_weights(mesh)?)?,
+        Weights::MeanValue => mean_value(mesh)?,
+    };
+    map_with_laplacian(&laplacian, boundary, positions, progress)
+}
+
+/// The same with the weights of a matrix: w_ij = −L(i, j), the rows summing to zero. Symmetric matrices are
+/// factored by Cholesky, others by LU.
+///
+/// Errors: [`Error::WrongLength`]; [`Error::Solve`], also where the matrix is not square or names no such
+/// vertex; [`Error::Cancelled`].
+pub fn map_with_laplacian(
+    laplacian: &SparseMatrix,
+    boundary: &[VertexId],
+    positions: &[DVec2],
+    progress: Progress<'_>,
+) -> Result<VertexMap<DVec2>, Error> {
     Error::check_length("the positions of the boundary", positions.len(), boundary.len())?;
+    laplacian.check_square()?;
     progress.report(0.0)?;
     let fixed: Vec<u32> = boundary.iter().map(|v| v.index() as u32).collect();
     let values: Vec<f64> =
         [0, 1].iter().flat_map(|&k| positions.iter().map(move |p| p[k])).collect();
-    let solving = progress.part(0.2, 1.0);
-    let flat = match weights {
-        Weights::Uniform => symmetric(&uniform_laplacian(mesh)?, &fixed, &values, solving)?,
-        Weights::Harmonic => symmetric(&cotangent_laplacian(mesh)?, &fixed, &values, solving)?,
-        Weights::IntrinsicHarmonic => {
-            let options = IntrinsicOptions::default();
-            let intrinsic = intrinsic_delaunay(mesh, &options, progress.part(0.0, 0.2))?;
-            symmetric(&intrinsic.laplacian, &fixed, &values, solving)?
-        }
-        Weights::MeanValue => unsymmetric(&mean_value_laplacian(mesh)?, &fixed, &values, solving)?,
-    };
+    let solve = if laplacian.check_symmetric().is_ok() { symmetric } else { unsymmetric };
+    let flat = solve(laplacian, &fixed, &values, progress.part(0.1, 1.0))?;
     progress.report(1.0)?;
-    let (u, v) = flat.split_at(mesh.vertex_count());
+    let (u, v) = flat.split_at(laplacian.rows());
     Ok(u.iter().zip(v).map(|(&u, &v)| DVec2::new(u, v)).collect::<Vec<_>>().into())
+}
+
+/// The Laplacian with a weight for each edge.
+pub(crate) fn from_edges(mesh: &Mesh, weights: &EdgeMap<f64>) -> Result<SparseMatrix, Error> {
+    let edge = |e| {
+        let [a, b] = mesh.edge_vertices(e).map(|v| v.index() as u32);
+        (a, b, weights[e])
+    };
+    let edges: Vec<(u32, u32, f64)> = mesh.edges().map(edge).collect();
+    Ok(SparseMatrix::from_edges(mesh.vertex_count(), &edges)?)
+}
+
+/// The matrix of mean value coordinates; row i has the weights of vertex i.
+fn mean_value(mesh: &Mesh) -> Result<SparseMatrix, Error> {
+    let lengths = edge_lengths(mesh);
+    let tangents: HalfedgeMap<f64> = mesh.map_halfedges(|h| match mesh.face(h) {
+        Some(_) => (0.5 * mesh.corner_angle(h)).tan(),
+        None => 0.0,
+    });
+    // Left of h lies the corner of h; right of it that of the next spoke clockwise.
+    let weight = |h: HalfedgeId| (tangents[h] + tangents[mesh.cw(h)]) / lengths[h.edge()];
+    let mut triplets = Vec::with_capacity(2 * mesh.halfedge_count());
+    for h in mesh.halfedges() {
+        let weight = weight(h);
+        if !weight.is_finite() {
+            return Err(Error::NoWeight { edge: h.edge() });
+        }
+        let (i, j) = (mesh.from(h).index() as u32, mesh.to(h).index() as u32);
+        triplets.extend([(i, i, weight), (i, j, -weight)]);
+    }
+    let n = mesh.vertex_count();
+    Ok(SparseMatrix::from_triplets(n, n, &triplets)?)
 }
 
 /// Both coordinates, one after the other.

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | is it a disk, and where does it end | [`disk_boundary`] |
 //! | the boundary on a convex shape | [`convex_boundary`], [`Outline`] |
-//! | inside of a given boundary, linear | [`map_to_boundary`], [`Weights`] |
+//! | inside of a given boundary, linear | [`map_to_boundary`], [`Weights`], [`map_with_laplacian`] |
 //! | conformal, the boundary free | [`least_squares_conformal`], [`Pin`] |
 //! | what a map does to lengths, angles, areas | [`distortion`], [`FaceDistortion`], [`DistortionReport`] |
 //! | does the plane's picture overlap | [`boundary_crossings`] |
@@ -38,4 +38,4 @@ pub use crossings::boundary_crossings;
 pub use disk::disk_boundary;
 pub use distortion::{DistortionReport, FaceDistortion, Spread, distortion, face_distortions};
 pub use error::Error;
-pub use fixed::{Weights, map_to_boundary};
+pub use fixed::{Weights, map_to_boundary, map_with_laplacian};

@@ -80,7 +80,7 @@ fn cancelling_ends_a_map() {
     let rim = disk_boundary(&mesh).unwrap();
     let held = convex_boundary(&mesh, &rim, &Outline::Circle).unwrap();
     let stop = |_: f64| ControlFlow::Break(());
-    for weights in [Weights::Uniform, Weights::MeanValue, Weights::IntrinsicHarmonic] {
+    for weights in [Weights::Uniform, Weights::MeanValue, Weights::Harmonic] {
         let result = map_to_boundary(&mesh, &rim, &held, weights, Progress::new(&stop));
         assert!(matches!(result, Err(Error::Cancelled(_))), "{weights:?}");
     }
