@@ -47,6 +47,10 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Remesh(#[from] dgp::remesh::Error),
 
+    /// Maps to the plane.
+    #[error("{0}")]
+    Param(#[from] dgp::param::Error),
+
     /// A crease or a corner of a file is too sharp, or less than smooth.
     #[error("{what} has sharpness {sharpness}, but it must be 0 (smooth) to 10 (sharp for ever)")]
     Sharpness {

@@ -39,6 +39,7 @@ fn main() -> ExitCode {
         Command::Geodesic(command) => command.run(&common),
         Command::Curvature(command) => command.run(&common),
         Command::Spectrum(command) => command.run(&common),
+        Command::Param(command) => command.run(&common),
         Command::Partition(command) => command.run(&common),
         Command::Compress(command) => command.run(&common),
         Command::Laplacian(command) => command.run(&common),

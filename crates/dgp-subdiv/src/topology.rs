@@ -10,6 +10,7 @@ use std::collections::HashMap;
 
 use dgp_mesh::{Connectivity, FaceId, FaceList, HalfedgeArrays, HalfedgeId, VertexId, parallel};
 
+#[cfg(test)]
 use crate::Counts;
 
 /// What a half-edge beside a hole has in place of a corner, and an isolated vertex of a half-edge.
@@ -144,6 +145,7 @@ impl Topology {
     }
 
     /// How many elements there are.
+    #[cfg(test)]
     pub(crate) fn counts(&self) -> Counts {
         Counts {
             vertices: self.vertex_count() as u64,

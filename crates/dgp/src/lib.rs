@@ -19,6 +19,7 @@
 //! | know the waves of a shape, cut, compress, match it | [`laplace::spectral`] |
 //! | refine cages into smooth surfaces, with creases | [`subdiv`] |
 //! | have fewer faces, or levels of detail that stream | [`remesh`] |
+//! | lay surfaces out in the plane | [`param`] |
 //! | solve sparse systems, find eigenpairs | [`sparse`] |
 //! | draw pictures, plot curves | [`view`] |
 //! | see how far a long computation is, and stop it | [`mesh::Progress`] |
@@ -59,6 +60,7 @@
 pub use dgp_io as io;
 pub use dgp_laplace as laplace;
 pub use dgp_mesh as mesh;
+pub use dgp_param as param;
 pub use dgp_remesh as remesh;
 pub use dgp_sparse as sparse;
 pub use dgp_subdiv as subdiv;

@@ -20,6 +20,7 @@ mod heat;
 mod info;
 mod laplacian;
 mod manual;
+mod param;
 mod partition;
 mod progressive;
 mod render;
@@ -63,6 +64,8 @@ pub(crate) enum Command {
     Fill(fill::Fill),
     /// Keep all levels of detail of a mesh in one file, or take one out
     Progressive(progressive::Progressive),
+    /// Lay a surface out in the plane, and say what that distorts
+    Param(param::Param),
     /// Flip, split, collapse, add and remove single elements
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two

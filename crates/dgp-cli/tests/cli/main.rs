@@ -5,6 +5,7 @@ mod distances;
 mod elements;
 mod filling;
 mod folder;
+mod layouts;
 mod operators;
 mod spectra;
 mod subdivision;

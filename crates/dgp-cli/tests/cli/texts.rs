@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 28] = [
+const COMMANDS: [&str; 29] = [
     "info",
     "check",
     "convert",
@@ -14,6 +14,7 @@ const COMMANDS: [&str; 28] = [
     "decimate",
     "progressive",
     "fill",
+    "param",
     "edit",
     "geodesic",
     "curvature",

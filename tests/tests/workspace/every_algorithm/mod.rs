@@ -4,6 +4,7 @@
 mod decimations;
 mod inputs;
 mod laplacians;
+mod layouts;
 mod outcome;
 mod spatial;
 mod subdivisions;

@@ -19,8 +19,8 @@ use dgp_mesh::{
 use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke, Style, render};
 
 use super::{
-    decimations::decimations, inputs::Input, laplacians::laplacians, outcome::Outcome,
-    spatial::spatial, subdivisions::subdivisions,
+    decimations::decimations, inputs::Input, laplacians::laplacians, layouts::layouts,
+    outcome::Outcome, spatial::spatial, subdivisions::subdivisions,
 };
 
 /// A name and what to run.
@@ -59,6 +59,7 @@ pub(crate) fn algorithms() -> Vec<Algorithm> {
         laplacians(),
         subdivisions(),
         decimations(),
+        layouts(),
         pictures_and_files(),
     ]
     .into_iter()
