@@ -29,7 +29,7 @@ mod quadric;
 
 pub use decimate::{
     Boundary, CollapseCost, CurvatureCost, DecimationOptions, DecimationReport, LengthCost, Memory,
-    Placement, Price, QuadricCost, QuadricOptions, Refusals, StopReason, Target, Volume, decimate,
+    Order, Placement, Price, QuadricCost, QuadricOptions, Refusals, StopReason, Target, Volume, decimate,
     decimate_quadric, seam_edges, sharp_edges,
 };
 pub use error::Error;
