@@ -4,7 +4,7 @@
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use dgp_mesh::{COLOR, Color, EdgeSet, Progress, VertexSet, shapes};
 use dgp_remesh::{
-    DecimationOptions, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate,
+    DecimationOptions, Order, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate,
     decimate_quadric,
 };
 
@@ -17,9 +17,9 @@ fn decimation(criterion: &mut Criterion) {
         let target = Target::Faces(mesh.face_count() / 10);
         let options = QuadricOptions::default();
         let none = (VertexSet::new(), EdgeSet::new());
-        let polished = QuadricOptions { polish: 2, ..options };
+        let passes = QuadricOptions { order: Order::Passes, ..options };
         for (name, options) in
-            [("quadric", options), ("polished", polished), ("fast", QuadricOptions::fast())]
+            [("quadric", options), ("passes", passes), ("fast", QuadricOptions::fast())]
         {
             group.bench_function(BenchmarkId::new(name, &input), |b| {
                 b.iter_batched(

@@ -1,7 +1,7 @@
 //! Decimation to a tenth and a hundredth of the faces: time and distance to the input in one row.
 //!
 //! Distances are those of the last result of each driver from the input and back: of the two means, root mean
-//! squares and bounds of the Hausdorff distance the larger, in units of the input's diagonal.
+//! squares and largest distances found the larger, in units of the input's diagonal.
 
 use std::{fs, path::Path, time::Duration};
 
@@ -33,7 +33,7 @@ const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Real meshes that are decimated where they are there.
 const REAL: [&str; 6] = [
-    "armadillo.off",
+    "data/meshes/armadillo.off",
     "closed/armadillo_29k.obj",
     "closed/lucy_100k.ply",
     "closed/igea_269k.ply",
@@ -83,7 +83,7 @@ fn drivers(peers: &Peers) -> Outcome<Vec<(Driver, &'static str)>> {
     let ours = Driver::ours()?;
     let mut drivers = vec![
         (ours.clone(), "quadric"),
-        (ours.named("dgp, polished".into()), "quadric-polished"),
+        (ours.named("dgp, passes".into()), "quadric-passes"),
         (ours.named("dgp, fast".into()), "quadric-fast"),
         (peers.openmesh.clone(), "quadric"),
         (peers.cgal.named("CGAL Lindstrom–Turk".into()), "lindstrom-turk"),

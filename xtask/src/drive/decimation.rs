@@ -1,9 +1,9 @@
-//! Decimation to `--levels` faces: on triangles with rings (`quadric`, `quadric-polished`, `quadric-fast`), with any
+//! Decimation to `--levels` faces: on triangles with rings (`quadric`, `quadric-passes`, `quadric-fast`), with any
 //! cost (`quadric-any`, `length`), or by the peer that is a crate (`meshoptimizer`).
 
 use dgp_mesh::{EdgeSet, Mesh, Progress, VertexSet};
 use dgp_remesh::{
-    DecimationOptions, LengthCost, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate,
+    DecimationOptions, LengthCost, Order, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate,
     decimate_quadric,
 };
 use serde_json::{Map, Value, json};
@@ -19,7 +19,7 @@ pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<(
     let input = built(&raw::read(&call.input)?)?;
     let target = Target::Faces(call.levels);
     let quadric = match call.scheme.as_str() {
-        "quadric-polished" => QuadricOptions { polish: 2, ..QuadricOptions::default() },
+        "quadric-passes" => QuadricOptions { order: Order::Passes, ..QuadricOptions::default() },
         "quadric-fast" => QuadricOptions::fast(),
         _ => QuadricOptions::default(),
     };

@@ -58,7 +58,7 @@ pub(crate) struct Decimate {
     /// Take a fraction of the time, and come out farther from the input (quadric)
     #[arg(long, conflicts_with_all = ["max_hausdorff", "polish"])]
     fast: bool,
-    /// How often vertices move in the end to where the points of the input are nearest (quadric)
+    /// How often vertices move in the end to where the input is nearest; 1 unless told (quadric)
     #[arg(long, value_name = "N", conflicts_with = "max_hausdorff")]
     polish: Option<usize>,
     #[command(flatten)]

@@ -15,8 +15,9 @@
 //!   change keep their bits.
 //! - Reference: Hoppe, "New quadric metric for simplifying meshes with appearance attributes", Visualization
 //!   1999.
-//! - Departs from it: planes and gradients are those of the present triangles (memoryless); values of a
-//!   vertex on a seam change by the same amount on both sides, and along a seam they are interpolated.
+//! - Departs from it: planes and gradients are those of the present triangles (memoryless); in the order of
+//!   collapses the values of a vertex on a seam count as if they changed by the same amount on both sides, while
+//!   the values it then gets are the best ones of each chart.
 
 use dgp_mesh::{
     AttributeTable, COLOR, Color, DVec2, DVec3, FaceId, Id, Mesh, NORMAL, Normal, UV,
@@ -34,11 +35,22 @@ pub(super) struct Channels {
     values: Vec<f64>,
     /// How long a difference of 1 is.
     scale: f64,
-    /// Of each vertex Σ w g gᵀ over triangles and channels, and Σ w.
+    /// The sums around each vertex where it has one chart.
     spread: Vec<[f64; 6]>,
     weight: Vec<f64>,
-    /// Of each vertex and channel Σ w g.
     pull: Vec<DVec3>,
+    /// Whether corners at a vertex differ.
+    is_split: Vec<bool>,
+}
+
+/// Sums over the triangles around a vertex with the same values at it.
+#[derive(Clone, Copy)]
+struct Chart<'a> {
+    /// Σ w g gᵀ over triangles and channels, and Σ w.
+    spread: [f64; 6],
+    weight: f64,
+    /// Σ w g of each channel.
+    pull: &'a [DVec3],
 }
 
 /// A column of a table of data.
@@ -104,6 +116,7 @@ impl Channels {
             spread: vec![[0.0; 6]; n],
             weight: vec![0.0; n],
             pull: vec![DVec3::ZERO; n * width],
+            is_split: vec![false; n],
         })
     }
 
@@ -111,27 +124,46 @@ impl Channels {
         self.width * (3 * f as usize + k)
     }
 
+    fn values_at(&self, at: usize) -> &[f64] {
+        &self.values[at..at + self.width]
+    }
+
     /// Sums anew over the triangles around `v`, whose normals are those times the root of their weight.
     pub(super) fn refresh(&mut self, rings: &Rings, normals: &[DVec3], v: u32) {
+        let mut pull = std::mem::take(&mut self.pull);
+        let room = &mut pull[self.width * v as usize..self.width * (v as usize + 1)];
+        let corner = |&f: &u32| self.values_at(self.at(f, rings.corner(f, v)));
+        let mut corners = rings.ring(v).iter().map(corner);
+        let first = corners.next();
+        self.is_split[v as usize] = corners.any(|other| Some(other) != first);
+        let sums = self.sums(rings, normals, v, None, room);
+        (self.spread[v as usize], self.weight[v as usize]) = sums;
+        self.pull = pull;
+    }
+
+    /// Σ w g gᵀ, Σ w, and into `pull` Σ w g, over the triangles around `v` with the values of corner `like` at it, or over
+    /// all.
+    fn sums(
+        &self,
+        rings: &Rings,
+        normals: &[DVec3],
+        v: u32,
+        like: Option<usize>,
+        pull: &mut [DVec3],
+    ) -> ([f64; 6], f64) {
         let (mut spread, mut weight) = ([0.0; 6], 0.0);
-        let pull = self.width * v as usize..self.width * (v as usize + 1);
-        self.pull[pull.clone()].fill(DVec3::ZERO);
-        let origin = rings.positions[v as usize];
+        pull.fill(DVec3::ZERO);
         for &f in rings.ring(v) {
-            let w = normals[f as usize].length_squared();
-            let [x, y] = rings.others(f, v).map(|u| rings.positions[u as usize] - origin);
-            let area = x.cross(y);
-            let square = area.length_squared();
-            if !(square > 0.0) {
-                continue;
-            }
-            // Gradients of what is 1 at one of the others and 0 at the rest.
-            let [along_x, along_y] = [y.cross(area) / square, area.cross(x) / square];
             let k = rings.corner(f, v);
             let here = self.at(f, k);
+            if like.is_some_and(|like| self.values_at(like) != self.values_at(here)) {
+                continue;
+            }
+            let Some([along_x, along_y]) = gradients(rings, f, v) else { continue };
+            let w = normals[f as usize].length_squared();
             let [next, prev] = [(k + 1) % 3, (k + 2) % 3].map(|k| self.at(f, k));
             weight += w;
-            for j in 0..self.width {
+            for (j, pull) in pull.iter_mut().enumerate() {
                 let s = self.values[here + j];
                 let (to_x, to_y) = (self.values[next + j] - s, self.values[prev + j] - s);
                 if to_x == 0.0 && to_y == 0.0 {
@@ -141,11 +173,28 @@ impl Channels {
                 for (entry, more) in spread.iter_mut().zip(outer(gradient, w)) {
                     *entry += more;
                 }
-                self.pull[pull.start + j] += gradient * w;
+                *pull += gradient * w;
             }
         }
-        self.spread[v as usize] = spread;
-        self.weight[v as usize] = weight;
+        (spread, weight)
+    }
+
+    /// The chart around `v` with the values of corner `like` at it; `room` is for its sums where there are others.
+    fn chart<'a>(
+        &'a self,
+        rings: &Rings,
+        normals: &[DVec3],
+        (v, like): (u32, usize),
+        room: &'a mut Vec<DVec3>,
+    ) -> Chart<'a> {
+        let i = v as usize;
+        if !self.is_split[i] {
+            let pull = &self.pull[self.width * i..self.width * (i + 1)];
+            return Chart { spread: self.spread[i], weight: self.weight[i], pull };
+        }
+        room.resize(self.width, DVec3::ZERO);
+        let (spread, weight) = self.sums(rings, normals, v, Some(like), room);
+        Chart { spread, weight, pull: room }
     }
 
     /// The corners at `v` and `w` in the triangles at their edge.
@@ -162,93 +211,103 @@ impl Channels {
         (count > 0).then_some(Sides { corners })
     }
 
-    /// δ of channel `j`.
-    #[inline]
-    fn step(&self, sides: &Sides, j: usize) -> f64 {
-        let of = |[a, b]: [usize; 2]| self.values[b + j] - self.values[a + j];
-        0.5 * (of(sides.corners[0]) + of(sides.corners[1])) * self.scale
-    }
-
-    /// G and h of channel `j`.
-    #[inline]
-    fn line(&self, [v, w]: [u32; 2], e: DVec3, step: f64, j: usize) -> (DVec3, DVec3, f64) {
-        let [of_v, of_w] = [v, w].map(|x| self.pull[self.width * x as usize + j]);
-        (of_v + of_w, of_w, self.weight[w as usize] * step - of_w.dot(e))
+    /// The two sides, or one where the other is the same.
+    fn distinct<'a>(&self, sides: &'a Sides) -> &'a [[usize; 2]] {
+        let [left, right] = &sides.corners;
+        let is_same = (0..2).all(|end| self.values_at(left[end]) == self.values_at(right[end]));
+        if is_same { &sides.corners[..1] } else { &sides.corners }
     }
 
     /// What the edge from `v` to `w` along `e` costs with the best values, relative to `v`.
-    pub(super) fn quadric(&self, rings: &Rings, [v, w]: [u32; 2], e: DVec3) -> Quadric {
-        let (i, j) = (v as usize, w as usize);
-        let weight = self.weight[i] + self.weight[j];
-        let Some(sides) = self.sides(rings, v, w).filter(|_| weight > 0.0) else {
-            return Quadric::ZERO;
-        };
-        let of_w = Quadric { a: self.spread[j], ..Quadric::ZERO };
-        let along = of_w.times(e);
-        let mut sum = Quadric { a: self.spread[j], b: -along, c: e.dot(along) };
-        for (entry, more) in sum.a.iter_mut().zip(self.spread[i]) {
-            *entry += more;
-        }
-        for channel in 0..self.width {
-            let step = self.step(&sides, channel);
-            let (pull, of_w, h) = self.line([v, w], e, step, channel);
-            for (entry, more) in sum.a.iter_mut().zip(outer(pull, 1.0 / weight)) {
-                *entry -= more;
+    pub(super) fn quadric(
+        &self,
+        rings: &Rings,
+        normals: &[DVec3],
+        [v, w]: [u32; 2],
+        e: DVec3,
+    ) -> Quadric {
+        let mut sum = Quadric::ZERO;
+        let Some(sides) = self.sides(rings, v, w) else { return sum };
+        let (mut room_v, mut room_w) = (Vec::new(), Vec::new());
+        for &[a, b] in self.distinct(&sides) {
+            let at_v = self.chart(rings, normals, (v, a), &mut room_v);
+            let at_w = self.chart(rings, normals, (w, b), &mut room_w);
+            let weight = at_v.weight + at_w.weight;
+            if !(weight > 0.0) {
+                continue;
             }
-            sum.b += step * of_w - pull * (h / weight);
-            sum.c += step * (self.weight[j] * step - 2.0 * of_w.dot(e)) - h * h / weight;
+            let of_w = Quadric { a: at_w.spread, ..Quadric::ZERO };
+            let along = of_w.times(e);
+            sum += Quadric { a: at_v.spread, ..Quadric::ZERO };
+            sum += Quadric { a: at_w.spread, b: -along, c: e.dot(along) };
+            for j in 0..self.width {
+                let step = (self.values[b + j] - self.values[a + j]) * self.scale;
+                let (pull, of_w) = (at_v.pull[j] + at_w.pull[j], at_w.pull[j]);
+                let h = at_w.weight * step - of_w.dot(e);
+                for (entry, more) in sum.a.iter_mut().zip(outer(pull, 1.0 / weight)) {
+                    *entry -= more;
+                }
+                sum.b += step * of_w - pull * (h / weight);
+                sum.c += step * (at_w.weight * step - 2.0 * of_w.dot(e)) - h * h / weight;
+            }
         }
         sum
     }
 
-    /// Gives corners at `v` and `w`, which are about to become one at `v + x`, their values there.
-    pub(super) fn merge(&mut self, rings: &Rings, [v, w]: [u32; 2], x: DVec3) {
-        let Some(sides) = self.sides(rings, v, w) else { return };
-        let e = rings.positions[w as usize] - rings.positions[v as usize];
-        let weight = self.weight[v as usize] + self.weight[w as usize];
-        let fraction = if x == DVec3::ZERO {
-            0.0
-        } else if x == e {
-            1.0
-        } else {
-            (x.dot(e) / e.length_squared()).clamp(0.0, 1.0)
-        };
-        let is_at_end = fraction == 0.0 && x == DVec3::ZERO || x == e;
-        for j in 0..self.width {
-            let seen = sides.corners.map(|pair| pair.map(|corner| self.values[corner + j]));
-            let between = |[a, b]: [f64; 2]| {
-                if a == b || fraction == 0.0 {
-                    a
-                } else if fraction == 1.0 {
-                    b
-                } else {
-                    a + (b - a) * fraction
-                }
-            };
-            let mut goals = seen.map(between);
-            if seen[0] == seen[1] && !is_at_end && weight > 0.0 {
-                let step = self.step(&sides, j);
-                let (pull, _, h) = self.line([v, w], e, step, j);
-                let t = (pull.dot(x) + h) / weight / self.scale;
-                let best = seen[0][0] + t;
-                if t != 0.0 && best.is_finite() {
-                    goals = [best; 2];
-                }
-            }
-            for (end, vertex) in [v, w].into_iter().enumerate() {
-                for &f in rings.ring(vertex) {
-                    let at = self.at(f, rings.corner(f, vertex)) + j;
-                    let value = self.values[at];
-                    self.values[at] = if value == seen[0][end] {
-                        goals[0]
-                    } else if value == seen[1][end] {
-                        goals[1]
-                    } else {
-                        value + (goals[0] - seen[0][end])
-                    };
-                }
+    /// Gives corners at `v` and `w`, which are about to become one at `v + x`, the best values there: each chart by what
+    /// is linear in it.
+    pub(super) fn merge(&mut self, rings: &Rings, normals: &[DVec3], ends: [u32; 2], x: DVec3) {
+        let Some(sides) = self.sides(rings, ends[0], ends[1]) else { return };
+        let [p, q] = ends.map(|v| rings.positions[v as usize]);
+        let moves = [x, x - (q - p)];
+        // Both are brought up to date, for what they know may be of before their surroundings changed.
+        for v in ends {
+            self.refresh(rings, normals, v);
+        }
+        let mut goals: Vec<([usize; 2], Vec<f64>)> = Vec::new();
+        for &corners in self.distinct(&sides) {
+            goals.push((corners, self.best(rings, normals, (ends, corners), moves)));
+        }
+        let mut changed: Vec<(usize, Vec<f64>)> = Vec::new();
+        for (end, v) in ends.into_iter().enumerate() {
+            for &f in rings.ring(v) {
+                let at = self.at(f, rings.corner(f, v));
+                let seen = goals.iter().find(|g| self.values_at(g.0[end]) == self.values_at(at));
+                changed.push((at, match seen {
+                    Some((_, goal)) => goal.clone(),
+                    // A chart that the edge does not touch.
+                    None => self.best(rings, normals, ([v; 2], [at; 2]), [moves[end]; 2]),
+                }));
             }
         }
+        for (at, goal) in changed {
+            self.values[at..at + self.width].copy_from_slice(&goal);
+        }
+    }
+
+    /// The best values where charts at two vertices, with the values of these corners, come together.
+    fn best(
+        &self,
+        rings: &Rings,
+        normals: &[DVec3],
+        (ends, corners): ([u32; 2], [usize; 2]),
+        moves: [DVec3; 2],
+    ) -> Vec<f64> {
+        // Where a vertex was, its values are.
+        if let Some(end) = moves.iter().position(|&x| x == DVec3::ZERO) {
+            return self.values_at(corners[end]).to_vec();
+        }
+        let (mut room_v, mut room_w) = (Vec::new(), Vec::new());
+        let at_v = self.chart(rings, normals, (ends[0], corners[0]), &mut room_v);
+        let at_w = self.chart(rings, normals, (ends[1], corners[1]), &mut room_w);
+        let weight = (at_v.weight + at_w.weight) * self.scale;
+        let value = |j: usize| {
+            let [a, b] = corners.map(|corner| self.values[corner + j]);
+            let pull = at_v.pull[j].dot(moves[0]) + at_w.pull[j].dot(moves[1]);
+            let t = (pull + at_w.weight * (b - a) * self.scale) / weight;
+            if t != 0.0 && (a + t).is_finite() { a + t } else { a }
+        };
+        (0..self.width).map(value).collect()
     }
 
     /// Puts the values into `mesh`, which has what is left of `rings` in the same order; `number` has the number of
@@ -274,6 +333,16 @@ impl Channels {
             }
         }
     }
+}
+
+/// The gradients in `f` of what is 1 at one of the corners after `v` and 0 at the others; `None` without area.
+#[inline]
+fn gradients(rings: &Rings, f: u32, v: u32) -> Option<[DVec3; 2]> {
+    let origin = rings.positions[v as usize];
+    let [x, y] = rings.others(f, v).map(|u| rings.positions[u as usize] - origin);
+    let area = x.cross(y);
+    let square = area.length_squared();
+    (square > 0.0).then(|| [y.cross(area) / square, area.cross(x) / square])
 }
 
 /// How many numbers a value of the column has; 0 if there is none of the type that the name stands for.

@@ -30,7 +30,8 @@ pub struct QuadricOptions {
     pub attribute_weight: f64,
     /// In which order edges collapse.
     pub order: Order,
-    /// How often, in the end, vertices move along their normals to where the points of the input are nearest.
+    /// How often, in the end, vertices move along their normals to where the input is nearest. Not done toward an error,
+    /// nor where all vertices are ones of the input.
     pub polish: usize,
     /// How much the squared length of an edge counts, so that among collapses without error short edges come
     /// first.

@@ -250,7 +250,7 @@ impl State {
             remembered: (!self.remembered.is_empty())
                 .then(|| [&self.remembered[i], &self.remembered[j]]),
             data: self.channels.as_ref().map(|channels| {
-                channels.quadric(&self.rings, [v, w], positions[j] - positions[i])
+                channels.quadric(&self.rings, &self.normals, [v, w], positions[j] - positions[i])
             }),
             slack: self.options.length_weight,
             areas: (!self.around.is_empty()).then(|| {
@@ -375,7 +375,7 @@ impl State {
             self.remembered[to as usize] = sum[0] + sum[1];
         }
         if let Some(channels) = &mut self.channels {
-            channels.merge(&self.rings, [v, w], position - ends[0]);
+            channels.merge(&self.rings, &self.normals, [v, w], position - ends[0]);
         }
         self.rings.collapse(from, to, shared);
         self.rings.positions[to as usize] = position;
