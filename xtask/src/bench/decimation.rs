@@ -76,7 +76,9 @@ pub(super) fn rows(
     let is_meant = matches!(input.purpose, Purpose::Decimation)
         || matches!(input.purpose, Purpose::Any) && input.files.is_some();
     let wanted = CASES.iter().filter(|(name, ..)| is_meant && is_wanted(name));
-    wanted.map(|&(name, what, part)| row(input, peers, effort, folder, (name, what, part))).collect()
+    wanted
+        .map(|&(name, what, part)| row(input, peers, effort, folder, (name, what, part)))
+        .collect()
 }
 
 fn drivers(peers: &Peers) -> Outcome<Vec<(Driver, &'static str)>> {
@@ -151,11 +153,14 @@ fn row(
 
 /// How far the result is from the input, both ways.
 pub(crate) fn quality(input: &IndexedFaceSet, result: &IndexedFaceSet) -> Outcome<Quality> {
-    let [a, b] = [TriangleTree::new(input, Progress::NONE)?, TriangleTree::new(result, Progress::NONE)?];
+    let [a, b] =
+        [TriangleTree::new(input, Progress::NONE)?, TriangleTree::new(result, Progress::NONE)?];
     let diagonal = a.bounding_box().map_or(1.0, |bounds| bounds.diagonal());
     let options = DeviationOptions { samples: 300_000 };
-    let [there, back] =
-        [deviation(&a, &b, &options, Progress::NONE)?, deviation(&b, &a, &options, Progress::NONE)?];
+    let [there, back] = [
+        deviation(&a, &b, &options, Progress::NONE)?,
+        deviation(&b, &a, &options, Progress::NONE)?,
+    ];
     let options = HausdorffOptions { tolerance: 1e-5, queries: 3_000_000 };
     let bounds = hausdorff(&a, &b, &options, Progress::NONE)?;
     Ok(Quality {

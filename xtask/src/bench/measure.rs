@@ -253,7 +253,10 @@ impl Row {
             let processor = median(&series.processor).unwrap_or_default();
             println!(
                 "    {name:24} {ms:9.1} ms {processor:9.1} cpu ms {:8} faces   mean {:8.4}   rms {:8.4}   largest {:8.3}",
-                q.faces, 1e4 * q.mean, 1e4 * q.rms, 1e4 * q.largest
+                q.faces,
+                1e4 * q.mean,
+                1e4 * q.rms,
+                1e4 * q.largest
             );
         }
         for failure in &self.failures {

@@ -3,8 +3,8 @@
 
 use dgp_mesh::{EdgeSet, Mesh, Progress, VertexSet};
 use dgp_remesh::{
-    DecimationOptions, LengthCost, Order, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate,
-    decimate_quadric,
+    DecimationOptions, LengthCost, Order, ProgressiveMesh, QuadricCost, QuadricOptions, Target,
+    decimate, decimate_quadric,
 };
 use serde_json::{Map, Value, json};
 

@@ -41,7 +41,8 @@ pub(super) fn compare(peers: &Peers, folder: &Path, table: &mut Table) -> Outcom
         let of = |driver: &Driver, scheme: &str| -> Outcome<Quality> {
             let out = folder.join("decimated-result");
             let levels = (set.face_count() / 10).to_string();
-            let options = ["--scheme", scheme, "--levels", &levels, "--out", &out.to_string_lossy()];
+            let options =
+                ["--scheme", scheme, "--levels", &levels, "--out", &out.to_string_lossy()];
             driver.call("decimate", &path, &options)?;
             let result = out.with_extension("raw");
             let found = quality(&set, &raw::read(&result)?)?;

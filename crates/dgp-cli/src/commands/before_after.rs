@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use dgp::{
     mesh::{Mesh, TriangulationMethod, triangulate},
-    view::{
-        Framing, Mark, Model, Panel, RenderOptions, Scene, Stroke, Style, render,
-    },
+    view::{Framing, Mark, Model, Panel, RenderOptions, Scene, Stroke, Style, render},
 };
 
 use crate::{cli::Input, failure::Failure, session::Session};

@@ -249,8 +249,7 @@ impl Decimate {
         let fixed = VertexSet::new();
         let angle = self.feature_angle.map(f64::to_radians);
         if self.is_of_triangles() {
-            let start =
-                if self.fast { QuadricOptions::fast() } else { QuadricOptions::default() };
+            let start = if self.fast { QuadricOptions::fast() } else { QuadricOptions::default() };
             let mut options = QuadricOptions { boundary, ..start };
             if let Some(weight) = self.attribute_weight {
                 options.attribute_weight = weight.of(1.0);

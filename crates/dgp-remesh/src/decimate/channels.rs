@@ -19,9 +19,7 @@
 //!   collapses the values of a vertex on a seam count as if they changed by the same amount on both sides, while
 //!   the values it then gets are the best ones of each chart.
 
-use dgp_mesh::{
-    AttributeTable, COLOR, Color, DVec2, DVec3, FaceId, Id, Mesh, NORMAL, Normal, UV,
-};
+use dgp_mesh::{AttributeTable, COLOR, Color, DVec2, DVec3, FaceId, Id, Mesh, NORMAL, Normal, UV};
 
 use super::rings::{NONE, Rings};
 use crate::quadric::{Quadric, outer};
@@ -273,11 +271,14 @@ impl Channels {
             for &f in rings.ring(v) {
                 let at = self.at(f, rings.corner(f, v));
                 let seen = goals.iter().find(|g| self.values_at(g.0[end]) == self.values_at(at));
-                changed.push((at, match seen {
-                    Some((_, goal)) => goal.clone(),
-                    // A chart that the edge does not touch.
-                    None => self.best(rings, normals, ([v; 2], [at; 2]), [moves[end]; 2]),
-                }));
+                changed.push((
+                    at,
+                    match seen {
+                        Some((_, goal)) => goal.clone(),
+                        // A chart that the edge does not touch.
+                        None => self.best(rings, normals, ([v; 2], [at; 2]), [moves[end]; 2]),
+                    },
+                ));
             }
         }
         for (at, goal) in changed {
@@ -317,7 +318,9 @@ impl Channels {
         for (new, (old, face)) in rings.left().enumerate() {
             for h in mesh.face_halfedges(FaceId::new(new)) {
                 let v = mesh.from(h);
-                let k = face.iter().position(|&u| u != NONE && number[u as usize] as usize == v.index());
+                let k = face
+                    .iter()
+                    .position(|&u| u != NONE && number[u as usize] as usize == v.index());
                 corners.extend(k.map(|k| (h, v, self.at(old.index() as u32, k))));
             }
         }

@@ -19,7 +19,11 @@ impl State {
             }
         }
         let final_position = |v: u32| {
-            self.frame.position(mesh.positions(), self.held[v as usize], self.rings.positions[v as usize])
+            self.frame.position(
+                mesh.positions(),
+                self.held[v as usize],
+                self.rings.positions[v as usize],
+            )
         };
         let positions: Vec<DVec3> = kept.iter().map(|&v| final_position(v)).collect();
         for v in 0..n as u32 {

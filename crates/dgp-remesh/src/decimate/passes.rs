@@ -35,9 +35,7 @@ impl State {
             self.refresh_all(&left);
             let mut waiting = self.rank_all(&left);
             let limit = (waiting.len() / PART + 1).min(self.wanted().saturating_mul(3) / 2 + 1);
-            let order = |x: &Waiting, y: &Waiting| {
-                x.2.key.total_cmp(&y.2.key).then(x.0.cmp(&y.0))
-            };
+            let order = |x: &Waiting, y: &Waiting| x.2.key.total_cmp(&y.2.key).then(x.0.cmp(&y.0));
             if limit < waiting.len() {
                 waiting.select_nth_unstable_by(limit, order);
                 waiting.truncate(limit);

@@ -64,8 +64,8 @@ impl State {
             let found = self.candidate(v, w);
             if let Some(shared) = self.check(v, w, &found) {
                 let (from, to) = self.collapse(v, w, &shared, &found);
-                    queue.heap.remove(VertexId::new(from as usize));
-                    self.touch(&mut queue, to, key);
+                queue.heap.remove(VertexId::new(from as usize));
+                self.touch(&mut queue, to, key);
                 if self.target.is_reached(self.rings.vertex_count, self.rings.face_count) {
                     return Ok(());
                 }

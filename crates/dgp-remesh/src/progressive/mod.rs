@@ -128,8 +128,7 @@ impl ProgressiveMesh {
             rings.positions[done.to as usize] = done.position;
         }
         let (columns, left_out) = data::columns(mesh);
-        let mut result =
-            ordered(mesh, &rings, &log, (&corners, &ends), (&gone, &counts), &held);
+        let mut result = ordered(mesh, &rings, &log, (&corners, &ends), (&gone, &counts), &held);
         result.left_out = left_out;
         if !columns.is_empty() {
             result.bring_data(mesh, &log, columns);

@@ -229,7 +229,8 @@ impl ProgressiveStream {
         }
         let mut cursor = Cursor { bytes: block };
         if is_base {
-            let mesh = base(&mut cursor, expected, self.version).filter(|_| cursor.bytes.is_empty());
+            let mesh =
+                base(&mut cursor, expected, self.version).filter(|_| cursor.bytes.is_empty());
             self.mesh = Some(mesh.ok_or_else(|| self.damaged("the base is inconsistent"))?);
         } else {
             if count == 0 || count > expected[2] - there {
@@ -389,7 +390,7 @@ fn push_position(bytes: &mut Vec<u8>, p: DVec3) {
 }
 
 fn push_numbers(bytes: &mut Vec<u8>, numbers: &[f64]) {
-    numbers.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
 }
 
 fn push_varint(bytes: &mut Vec<u8>, mut value: u32) {

@@ -105,7 +105,11 @@ fn seams_stay_where_data_count() {
             let Some(f) = mesh.face(h) else { return DVec2::ZERO };
             let p = mesh.position(mesh.from(h));
             // The other chart lies turned by a quarter.
-            if mesh.face_center(f).x < 0.5 { DVec2::new(p.x, p.y) } else { DVec2::new(5.0 - p.y, p.x) }
+            if mesh.face_center(f).x < 0.5 {
+                DVec2::new(p.x, p.y)
+            } else {
+                DVec2::new(5.0 - p.y, p.x)
+            }
         })
         .collect();
     mesh.attributes_mut().corner.insert(UV, uv);
