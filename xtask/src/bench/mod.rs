@@ -37,7 +37,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
         match option.as_str() {
             "--quick" => effort = Effort::Quick,
             "--criterion" => return shell::run(&mut shell::cargo(&["bench", "--workspace"])),
-            word if !word.starts_with('-') => only.push(word.as_str()),
+            word if !word.starts_with('-') => only.push(word),
             _ => return Err("usage: bench [--quick | --criterion] [CASE…]".into()),
         }
     }
@@ -50,7 +50,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     let mut inputs = inputs::prepare(effort, &folder)?;
     inputs.extend(decimation::inputs(effort, &folder)?);
     let is_wanted =
-        |name: &str| only.is_empty() || only.iter().any(|word: &&str| name.contains(*word));
+        |name: &str| only.is_empty() || only.iter().any(|word: &&str| name.contains(word));
     let mut rows = Vec::new();
     for input in &inputs {
         for case in cases::all().iter().filter(|case| is_wanted(case.name)) {

@@ -87,7 +87,7 @@ impl Default for QuadricOptions {
             length_weight: 1e-9,
             attribute_weight: 0.0,
             order: Order::Best,
-            polish: 0,
+            polish: 1,
             volume: Volume::Kept,
         }
     }

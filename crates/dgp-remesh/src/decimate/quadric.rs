@@ -25,7 +25,9 @@ use crate::Error;
 
 /// Decimates triangles toward `target`; vertices of `fixed` stay where they are.
 ///
-/// Data travel: see [`Editor::collapse_at`](dgp_mesh::Editor::collapse_at). A cancelled run leaves a valid mesh, decimated part of the way.
+/// Data travel: see [`Editor::collapse_at`](dgp_mesh::Editor::collapse_at); those that count by
+/// [`attribute_weight`](QuadricOptions::attribute_weight) get their best values. A cancelled run leaves a valid mesh,
+/// decimated part of the way.
 ///
 /// Errors: [`Error::NotTriangle`], [`Error::NotFinite`], [`Error::InvalidOption`], [`Error::Cancelled`].
 pub fn decimate_quadric(

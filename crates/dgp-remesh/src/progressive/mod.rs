@@ -89,7 +89,8 @@ struct Split {
 
 impl ProgressiveMesh {
     /// Decimates a copy of `mesh` toward `target`, which becomes the base, and keeps all levels between. The
-    /// present level is the finest. `options.polish` is not done, for no level would be that of another.
+    /// present level is the finest. `options.polish` is not done, for it is
+    /// the end of one level only; data are mixed as they travel, also where `options.attribute_weight` makes them count.
     ///
     /// Errors: those of [`decimate_quadric`](crate::decimate_quadric).
     pub fn new(
