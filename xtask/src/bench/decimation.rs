@@ -49,7 +49,7 @@ pub(super) fn inputs(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
     }
     let folders: Vec<_> = data::unpack().into_iter().chain(data::shared()).collect();
     for (place, file) in folders.iter().flat_map(|place| REAL.iter().map(move |f| (place, f))) {
-        let Ok(document) = dgp_io::read(&place.join(file)) else { continue };
+        let Ok(document) = dgp_io::read(place.join(file)) else { continue };
         let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let raw = folder.join(format!("{name}.raw"));
         raw::write(&raw, &document.set)?;

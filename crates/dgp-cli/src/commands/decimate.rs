@@ -145,23 +145,20 @@ impl Decimate {
             cut_polygons(&mut session, &self.input, &mut mesh)?;
         }
         let before = self.pictured.before(&mesh);
-        let (report, bounds) = match self.max_hausdorff {
-            Some(limit) => {
-                let limit = limit.of(bounding_box(&mesh).map_or(0.0, |bounds| bounds.diagonal()));
-                let found = session.run("decimating", |p| self.apply_within(&mut mesh, limit, p));
-                let (report, bounds) = found.map_err(in_file)?;
-                if bounds.is_some_and(|bounds| bounds.upper() > limit) {
-                    session.warn(format!(
-                        "{}: that the distance stays below {limit:e} is not sure; see `hausdorff` in the report",
-                        path.display()
-                    ));
-                }
-                (report, bounds)
+        let (report, bounds) = if let Some(limit) = self.max_hausdorff {
+            let limit = limit.of(bounding_box(&mesh).map_or(0.0, |bounds| bounds.diagonal()));
+            let found = session.run("decimating", |p| self.apply_within(&mut mesh, limit, p));
+            let (report, bounds) = found.map_err(in_file)?;
+            if bounds.is_some_and(|bounds| bounds.upper() > limit) {
+                session.warn(format!(
+                    "{}: that the distance stays below {limit:e} is not sure; see `hausdorff` in the report",
+                    path.display()
+                ));
             }
-            None => {
-                let apply = |p: Progress<'_>| self.apply(&mut mesh, f64::INFINITY, p);
-                (session.run("decimating", apply).map_err(in_file)?, None)
-            }
+            (report, bounds)
+        } else {
+            let apply = |p: Progress<'_>| self.apply(&mut mesh, f64::INFINITY, p);
+            (session.run("decimating", apply).map_err(in_file)?, None)
         };
         if report.stop == StopReason::NothingLeft && self.goal.error.is_none() {
             session.warn(format!(
