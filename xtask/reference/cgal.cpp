@@ -236,28 +236,19 @@ double border_edges(const Mesh& mesh) {
 void decimate(Report& report, const Raw& raw, const Call& call) {
     namespace simplification = CGAL::Surface_mesh_simplification;
     const auto original = built(raw);
-    std::unique_ptr<Mesh> last;
-    report.time_from(
-        call.repeat,
-        [&] {
-            last.reset();
-            last = std::make_unique<Mesh>(*original);
-            return last.get();
-        },
-        [&](Mesh* mesh) {
-            const double edges = 1.5 * call.levels + 0.5 * border_edges(*mesh) * call.levels / double(num_faces(*mesh));
-            const simplification::Count_stop_predicate<Mesh> stop{std::size_t(edges) + 1};
-            if (call.scheme == "lindstrom-turk") {
-                simplification::edge_collapse(*mesh, stop,
-                    CGAL::parameters::get_cost(simplification::LindstromTurk_cost<Mesh>())
-                        .get_placement(simplification::LindstromTurk_placement<Mesh>()));
-            } else if (call.scheme == "garland-heckbert") {
-                simplification::GarlandHeckbert_policies<Mesh, Kernel> policies(*mesh);
-                simplification::edge_collapse(*mesh, stop,
-                    CGAL::parameters::get_cost(policies.get_cost()).get_placement(policies.get_placement()));
-            } else throw std::runtime_error("CGAL has no policy " + call.scheme);
-            return 0;
-        });
+    const auto last = time_on_copies(report, call.repeat, *original, [&](Mesh& mesh) {
+        const double edges = 1.5 * call.levels + 0.5 * border_edges(mesh) * call.levels / double(num_faces(mesh));
+        const simplification::Count_stop_predicate<Mesh> stop{std::size_t(edges) + 1};
+        if (call.scheme == "lindstrom-turk") {
+            simplification::edge_collapse(mesh, stop,
+                CGAL::parameters::get_cost(simplification::LindstromTurk_cost<Mesh>())
+                    .get_placement(simplification::LindstromTurk_placement<Mesh>()));
+        } else if (call.scheme == "garland-heckbert") {
+            simplification::GarlandHeckbert_policies<Mesh, Kernel> policies(mesh);
+            simplification::edge_collapse(mesh, stop,
+                CGAL::parameters::get_cost(policies.get_cost()).get_placement(policies.get_placement()));
+        } else throw std::runtime_error("CGAL has no policy " + call.scheme);
+    });
     last->collect_garbage();
     report.number("vertices", double(last->number_of_vertices()));
     report.number("faces", double(last->number_of_faces()));
@@ -268,23 +259,14 @@ void decimate(Report& report, const Raw& raw, const Call& call) {
 void subdivide(Report& report, const Raw& raw, const Call& call) {
     namespace method = CGAL::Subdivision_method_3;
     const auto original = built(raw);
-    std::unique_ptr<Mesh> last;
-    report.time_from(
-        call.repeat,
-        [&] {
-            last.reset();
-            last = std::make_unique<Mesh>(*original);
-            return last.get();
-        },
-        [&](Mesh* mesh) {
-            const auto levels = CGAL::parameters::number_of_iterations(unsigned(call.levels));
-            if (call.scheme == "loop") method::Loop_subdivision(*mesh, levels);
-            else if (call.scheme == "catmull-clark") method::CatmullClark_subdivision(*mesh, levels);
-            else if (call.scheme == "doo-sabin") method::DooSabin_subdivision(*mesh, levels);
-            else if (call.scheme == "sqrt3") method::Sqrt3_subdivision(*mesh, levels);
-            else throw std::runtime_error("CGAL has no scheme " + call.scheme);
-            return 0;
-        });
+    const auto last = time_on_copies(report, call.repeat, *original, [&](Mesh& mesh) {
+        const auto levels = CGAL::parameters::number_of_iterations(unsigned(call.levels));
+        if (call.scheme == "loop") method::Loop_subdivision(mesh, levels);
+        else if (call.scheme == "catmull-clark") method::CatmullClark_subdivision(mesh, levels);
+        else if (call.scheme == "doo-sabin") method::DooSabin_subdivision(mesh, levels);
+        else if (call.scheme == "sqrt3") method::Sqrt3_subdivision(mesh, levels);
+        else throw std::runtime_error("CGAL has no scheme " + call.scheme);
+    });
     report.number("vertices", double(last->number_of_vertices()));
     report.number("faces", double(last->number_of_faces()));
     if (call.out.empty()) return;

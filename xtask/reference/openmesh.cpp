@@ -210,24 +210,15 @@ void decimate(Report& report, const Raw& raw, const Call& call) {
     original->request_edge_status();
     original->request_face_status();
     original->update_face_normals();
-    std::unique_ptr<Triangles> last;
-    report.time_from(
-        call.repeat,
-        [&] {
-            last.reset();
-            last = std::make_unique<Triangles>(*original);
-            return last.get();
-        },
-        [&](Triangles* mesh) {
-            OpenMesh::Decimater::DecimaterT<Triangles> decimater(*mesh);
-            OpenMesh::Decimater::ModQuadricT<Triangles>::Handle quadric;
-            decimater.add(quadric);
-            decimater.module(quadric).unset_max_err();
-            if (!decimater.initialize()) throw std::runtime_error("OpenMesh does not decimate it");
-            decimater.decimate_to_faces(0, std::size_t(call.levels));
-            mesh->garbage_collection();
-            return 0;
-        });
+    const auto last = time_on_copies(report, call.repeat, *original, [&](Triangles& mesh) {
+        OpenMesh::Decimater::DecimaterT<Triangles> decimater(mesh);
+        OpenMesh::Decimater::ModQuadricT<Triangles>::Handle quadric;
+        decimater.add(quadric);
+        decimater.module(quadric).unset_max_err();
+        if (!decimater.initialize()) throw std::runtime_error("OpenMesh does not decimate it");
+        decimater.decimate_to_faces(0, std::size_t(call.levels));
+        mesh.garbage_collection();
+    });
     report.number("vertices", double(last->n_vertices()));
     report.number("faces", double(last->n_faces()));
     if (!call.out.empty()) write_mesh_raw(*last, call.out + ".raw");
@@ -237,19 +228,10 @@ void decimate(Report& report, const Raw& raw, const Call& call) {
 template <class Mesh, class Subdivider>
 void refined(Report& report, const Raw& raw, const Call& call) {
     const auto original = built<Mesh>(raw);
-    std::unique_ptr<Mesh> last;
-    report.time_from(
-        call.repeat,
-        [&] {
-            last.reset();
-            last = std::make_unique<Mesh>(*original);
-            return last.get();
-        },
-        [&](Mesh* mesh) {
-            Subdivider subdivider;
-            if (!subdivider(*mesh, std::size_t(call.levels))) throw std::runtime_error("OpenMesh does not refine it");
-            return 0;
-        });
+    const auto last = time_on_copies(report, call.repeat, *original, [&](Mesh& mesh) {
+        Subdivider subdivider;
+        if (!subdivider(mesh, std::size_t(call.levels))) throw std::runtime_error("OpenMesh does not refine it");
+    });
     report.number("vertices", double(last->n_vertices()));
     report.number("faces", double(last->n_faces()));
     if (call.out.empty()) return;

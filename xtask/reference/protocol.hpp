@@ -19,6 +19,7 @@
 #include <cstring>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -205,6 +206,24 @@ struct Call {
         return call;
     }
 };
+
+// Times `work` on copies of `original`, which are made outside the timed part; returns the last one, changed.
+template <class Mesh, class Work>
+std::unique_ptr<Mesh> time_on_copies(Report& report, int repeat, const Mesh& original, Work work) {
+    std::unique_ptr<Mesh> last;
+    report.time_from(
+        repeat,
+        [&] {
+            last.reset();
+            last = std::make_unique<Mesh>(original);
+            return last.get();
+        },
+        [&](Mesh* mesh) {
+            work(*mesh);
+            return 0;
+        });
+    return last;
+}
 
 // What the process holds after building beyond what it held before, and the most it held between.
 template <class Build>

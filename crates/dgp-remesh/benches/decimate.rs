@@ -2,9 +2,9 @@
 //! The input's name ends with its number of faces.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
-use dgp_mesh::{EdgeSet, Progress, VertexSet, shapes};
+use dgp_mesh::{COLOR, Color, EdgeSet, Progress, VertexSet, shapes};
 use dgp_remesh::{
-    DecimationOptions, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate,
+    DecimationOptions, Order, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate,
     decimate_quadric,
 };
 
@@ -17,11 +17,35 @@ fn decimation(criterion: &mut Criterion) {
         let target = Target::Faces(mesh.face_count() / 10);
         let options = QuadricOptions::default();
         let none = (VertexSet::new(), EdgeSet::new());
-        group.bench_function(BenchmarkId::new("quadric", &input), |b| {
+        let passes = QuadricOptions { order: Order::Passes, ..options };
+        for (name, options) in
+            [("quadric", options), ("passes", passes), ("fast", QuadricOptions::fast())]
+        {
+            group.bench_function(BenchmarkId::new(name, &input), |b| {
+                b.iter_batched(
+                    || mesh.clone(),
+                    |mut mesh| {
+                        decimate_quadric(&mut mesh, target, &none.0, &options, Progress::NONE)
+                            .expect("triangles")
+                    },
+                    BatchSize::LargeInput,
+                );
+            });
+        }
+        let mut painted = mesh.clone();
+        let colors: Vec<Color> = mesh
+            .positions()
+            .values()
+            .iter()
+            .map(|p| Color([p.x.abs() as f32, p.y.abs() as f32, p.z.abs() as f32, 1.0]))
+            .collect();
+        painted.attributes_mut().vertex.insert(COLOR, colors);
+        let weighted = QuadricOptions { attribute_weight: 0.05, ..options };
+        group.bench_function(BenchmarkId::new("with colors", &input), |b| {
             b.iter_batched(
-                || mesh.clone(),
+                || painted.clone(),
                 |mut mesh| {
-                    decimate_quadric(&mut mesh, target, &none.0, &options, Progress::NONE)
+                    decimate_quadric(&mut mesh, target, &none.0, &weighted, Progress::NONE)
                         .expect("triangles")
                 },
                 BatchSize::LargeInput,
@@ -45,6 +69,12 @@ fn decimation(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("all levels and back", &input), |b| {
             b.iter(|| {
                 levels.set_level(0).expect("the base");
+                levels.set_level(finest).expect("the finest");
+            });
+        });
+        group.bench_function(BenchmarkId::new("a hundred levels and back", &input), |b| {
+            b.iter(|| {
+                levels.set_level(finest - 100).expect("a level");
                 levels.set_level(finest).expect("the finest");
             });
         });

@@ -29,8 +29,8 @@ mod quadric;
 
 pub use decimate::{
     Boundary, CollapseCost, CurvatureCost, DecimationOptions, DecimationReport, LengthCost, Memory,
-    Placement, Price, QuadricCost, QuadricOptions, Refusals, StopReason, Target, Volume, decimate,
-    decimate_quadric, seam_edges, sharp_edges,
+    Order, Placement, Price, QuadricCost, QuadricOptions, Refusals, StopReason, Target, Volume,
+    decimate, decimate_quadric, seam_edges, sharp_edges,
 };
 pub use error::Error;
 pub use fill::{FillOptions, FillReport, Hole, HoleOutcome, LongestRim, Patch, fill_holes};

@@ -33,6 +33,8 @@ pub(super) enum Purpose {
     Solvers,
     /// To be refined so often.
     Refinement(Cage, usize),
+    /// Decimation only.
+    Decimation,
 }
 
 /// Writes the inputs for this effort.

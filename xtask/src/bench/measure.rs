@@ -16,23 +16,33 @@ const PATIENCE: Duration = Duration::from_secs(900);
 
 /// One case on one input.
 pub(super) struct Row {
-    case: &'static str,
-    what: &'static str,
-    input: String,
-    triangles: usize,
-    unit: &'static str,
-    ours: Series,
-    peers: Vec<(String, Series)>,
+    pub(super) case: &'static str,
+    pub(super) what: &'static str,
+    pub(super) input: String,
+    pub(super) triangles: usize,
+    pub(super) unit: &'static str,
+    pub(super) ours: Series,
+    pub(super) peers: Vec<(String, Series)>,
     /// Why a driver has no figure.
-    failures: Vec<String>,
+    pub(super) failures: Vec<String>,
 }
 
 /// The figures of one driver, one per round.
 #[derive(Default)]
-struct Series {
+pub(super) struct Series {
     values: Vec<f64>,
     processor: Vec<f64>,
     peak: Vec<f64>,
+    pub(super) quality: Option<Quality>,
+}
+
+/// How far a result is from the input; distances in units of its diagonal.
+#[derive(Clone, Copy)]
+pub(crate) struct Quality {
+    pub(crate) faces: usize,
+    pub(crate) mean: f64,
+    pub(crate) rms: f64,
+    pub(crate) largest: f64,
 }
 
 /// Runs one case in alternation; `None` where the input is not made for it.
@@ -45,7 +55,7 @@ pub(super) fn case(
 ) -> Option<Row> {
     let (is_meant, levels) = match (input.purpose, case.data) {
         (Purpose::Refinement(cage, levels), Data::Cage(wanted)) => (cage == wanted, Some(levels)),
-        (Purpose::Refinement(..), _) | (_, Data::Cage(_)) => (false, None),
+        (Purpose::Refinement(..) | Purpose::Decimation, _) | (_, Data::Cage(_)) => (false, None),
         (Purpose::Solvers, _) => (case.handles, None),
         (Purpose::Any, _) => (true, None),
     };
@@ -136,6 +146,11 @@ pub(super) fn case(
 }
 
 impl Series {
+    /// Takes the times of an answer.
+    pub(super) fn add_time(&mut self, answer: &Value) {
+        self.add(Figure::Time, answer, 1);
+    }
+
     fn add(&mut self, figure: Figure, answer: &Value, triangles: usize) {
         let list = |name: &str| -> Vec<f64> {
             answer[name].as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
@@ -159,6 +174,9 @@ impl Series {
             "max": self.values.iter().copied().reduce(f64::max),
             "cpu": median(&self.processor),
             "peak_bytes": median(&self.peak),
+            "quality": self.quality.map(|q| json!({
+                "faces": q.faces, "mean": q.mean, "rms": q.rms, "largest": q.largest,
+            })),
         })
     }
 }
@@ -198,10 +216,14 @@ impl Row {
         })
     }
 
-    fn print(&self) {
+    pub(super) fn print(&self) {
         let mut line = format!("{:16} {:24}", self.case, self.input);
         if let Some(ours) = median(&self.ours.values) {
             let _ = write!(line, " {ours:9.2} {}", self.unit);
+        }
+        if self.ours.quality.is_some() {
+            println!("{line}");
+            return self.print_qualities();
         }
         for (name, series) in &self.peers {
             if let (Some(value), Some(ratio)) =
@@ -215,6 +237,28 @@ impl Row {
             }
         }
         println!("{line}");
+        for failure in &self.failures {
+            println!("    no figure: {failure}");
+        }
+    }
+}
+
+impl Row {
+    /// A line for each driver: times, and distances in 10⁻⁴ of the diagonal.
+    fn print_qualities(&self) {
+        let ours = ("dgp".to_owned(), &self.ours);
+        let peers = self.peers.iter().map(|(name, series)| (name.clone(), series));
+        for (name, series) in std::iter::once(ours).chain(peers) {
+            let (Some(q), Some(ms)) = (series.quality, median(&series.values)) else { continue };
+            let processor = median(&series.processor).unwrap_or_default();
+            println!(
+                "    {name:24} {ms:9.1} ms {processor:9.1} cpu ms {:8} faces   mean {:8.4}   rms {:8.4}   largest {:8.3}",
+                q.faces,
+                1e4 * q.mean,
+                1e4 * q.rms,
+                1e4 * q.largest
+            );
+        }
         for failure in &self.failures {
             println!("    no figure: {failure}");
         }

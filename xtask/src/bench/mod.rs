@@ -5,9 +5,10 @@
 
 mod cases;
 mod crates;
+pub(crate) mod decimation;
 mod inputs;
 mod machine;
-mod measure;
+pub(crate) mod measure;
 mod page;
 
 use std::fs;
@@ -46,14 +47,16 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     };
     let peers = Peers::build(wanted)?;
     let folder = shell::target(folder)?;
-    let inputs = inputs::prepare(effort, &folder)?;
+    let mut inputs = inputs::prepare(effort, &folder)?;
+    inputs.extend(decimation::inputs(effort, &folder)?);
+    let is_wanted =
+        |name: &str| only.is_empty() || only.iter().any(|word: &&str| name.contains(word));
     let mut rows = Vec::new();
     for input in &inputs {
-        for case in cases::all() {
-            if only.is_empty() || only.iter().any(|word| case.name.contains(word)) {
-                rows.extend(measure::case(&case, input, &peers, effort, &folder));
-            }
+        for case in cases::all().iter().filter(|case| is_wanted(case.name)) {
+            rows.extend(measure::case(case, input, &peers, effort, &folder));
         }
+        rows.extend(decimation::rows(input, &peers, effort, &folder, is_wanted)?);
     }
     let crates =
         if effort == Effort::Full && only.is_empty() { crates::measure()? } else { Value::Null };

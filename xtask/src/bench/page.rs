@@ -54,11 +54,16 @@ fn section(page: &mut String, rows: &[&Value]) {
     let (case, what, unit) =
         (text(&rows[0]["case"]), text(&rows[0]["what"]), text(&rows[0]["unit"]));
     let _ = write!(page, "<h2 id=\"{case}\">{case}: {what}</h2>");
+    let distances = if rows.iter().any(|row| row["ours"]["quality"].is_object()) {
+        "<th>faces</th><th>mean</th><th>rms</th><th>largest, 10⁻⁴ of the diagonal</th>"
+    } else {
+        ""
+    };
     let _ = write!(
         page,
         "<table><tr><th>input</th><th class=\"text\">who</th><th>{unit}</th><th class=\"text\">range</th>\
          <th>processor ms</th><th>peak MB</th><th>ratio</th><th class=\"text\">range</th><th>processor ratio</th>\
-         <th class=\"text\"></th></tr>"
+         <th class=\"text\"></th>{distances}</tr>"
     );
     for row in rows {
         let peers: Vec<&Value> = row["peers"].as_array().into_iter().flatten().collect();
@@ -109,7 +114,7 @@ fn line(page: &mut String, input: &str, who: &str, series: &Value, largest: f64)
     let _ = write!(
         page,
         "<tr><td>{}</td><td class=\"text\">{}</td><td>{}</td><td class=\"text range\">{}</td><td>{}</td>\
-         <td>{peak}</td><td>{ratio}</td><td class=\"text range\">{}</td><td>{}</td><td class=\"text\">{bar}</td></tr>",
+         <td>{peak}</td><td>{ratio}</td><td class=\"text range\">{}</td><td>{}</td><td class=\"text\">{bar}</td>{}</tr>",
         escaped(input),
         escaped(who),
         figure(median),
@@ -117,7 +122,22 @@ fn line(page: &mut String, input: &str, who: &str, series: &Value, largest: f64)
         optional("cpu"),
         range("ratio_min", "ratio_max"),
         optional("cpu_ratio"),
+        distances(&series["quality"]),
     );
+}
+
+/// The cells of what a result is like; nothing where it was not measured.
+fn distances(quality: &Value) -> String {
+    let cell = |name: &str| {
+        let value = quality[name].as_f64().unwrap_or_default();
+        format!("<td>{:.3}</td>", 1e4 * value)
+    };
+    match quality["faces"].as_u64() {
+        Some(faces) => {
+            format!("<td>{faces}</td>{}{}{}", cell("mean"), cell("rms"), cell("largest"))
+        }
+        None => String::new(),
+    }
 }
 
 fn crates(page: &mut String, crates: &Value) {

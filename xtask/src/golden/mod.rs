@@ -5,6 +5,7 @@
 
 mod charts;
 mod compare;
+mod decimated;
 mod estimates;
 mod facts;
 mod inputs;
@@ -45,8 +46,17 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             table.print();
             return table.verdict();
         }
+        [option] if option == "--decimated" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            decimated::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--regenerate" => true,
-        _ => return Err("usage: golden [--regenerate | --refined | --spatial]".into()),
+        _ => {
+            return Err("usage: golden [--regenerate | --refined | --spatial | --decimated]".into());
+        }
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;
@@ -67,6 +77,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     estimates::compare(&peers, &folder, &mut table)?;
     refined::compare(&peers, &folder, &mut table)?;
     spatial::compare(&peers, &folder, &mut table)?;
+    decimated::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

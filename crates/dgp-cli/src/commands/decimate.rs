@@ -1,11 +1,13 @@
 //! `dgp decimate`: fewer faces for the same shape.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use dgp::{
     mesh::{
-        EdgeSet, Mesh, Progress, TriangulationMethod, VertexSet, measure::bounding_box, triangulate,
+        EdgeSet, Mesh, Progress, VertexSet,
+        measure::bounding_box,
+        spatial::{HausdorffOptions, HausdorffReport, TriangleTree, hausdorff},
     },
     remesh::{
         self, Boundary, CurvatureCost, DecimationOptions, DecimationReport, LengthCost, Memory,
@@ -15,6 +17,7 @@ use dgp::{
 };
 use serde_json::{Value, json};
 
+use super::before_after::{BeforeAfter, cut_polygons};
 use crate::{
     cli::{Common, Input, Output},
     failure::Failure,
@@ -41,16 +44,25 @@ pub(crate) struct Decimate {
     /// Keep edges sharp at which the normals of faces differ by more than DEG degrees
     #[arg(long, value_name = "DEG", value_parser = degrees)]
     feature_angle: Option<f64>,
-    /// Keep every vertex of the input that close to the result: a length, or a percentage of the diagonal of the
-    /// input such as 0.1%
+    /// Keep the result and the input that close to each other: a length, or a percentage of the diagonal of the
+    /// input such as 0.1%; the report holds the bounds of the Hausdorff distance
     #[arg(long, value_name = "H", value_parser = amount)]
     max_hausdorff: Option<Amount>,
     /// Let all vertices be ones of the input (quadric)
     #[arg(long)]
     keep_positions: bool,
-    /// Draw the mesh before and after into a PNG
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
+    /// How much data count: a difference of 1 in normals, colors of 0 to 1 and texture coordinates is as long as this
+    /// part of the diagonal, such as 5% (quadric)
+    #[arg(long, value_name = "W", value_parser = amount, conflicts_with = "max_hausdorff")]
+    attribute_weight: Option<Amount>,
+    /// Take a fraction of the time, and come out farther from the input (quadric)
+    #[arg(long, conflicts_with_all = ["max_hausdorff", "polish"])]
+    fast: bool,
+    /// How often vertices move in the end to where the input is nearest; 1 unless told (quadric)
+    #[arg(long, value_name = "N", conflicts_with = "max_hausdorff")]
+    polish: Option<usize>,
+    #[command(flatten)]
+    pictured: BeforeAfter,
 }
 
 /// Where to stop.
@@ -119,19 +131,35 @@ fn degrees(text: &str) -> Result<f64, String> {
 
 impl Decimate {
     pub(crate) fn run(&self, common: &Common) -> Result<ExitCode, Failure> {
+        let is_for_quadrics = self.fast || self.polish.is_some() || self.attribute_weight.is_some();
+        if is_for_quadrics && self.cost != Cost::Quadric {
+            let what = "--fast, --polish and --attribute-weight need --cost quadric";
+            return Err(Failure::Usage(what.to_owned()));
+        }
         let mut session = Session::new("decimate", common);
         let mut document = session.read(&self.input)?;
         let mut mesh = session.mesh(&self.input, &document)?;
         let path = &self.input.path;
         let in_file = |failure: Failure| failure.in_file(path);
-        if self.is_fast() && mesh.faces().any(|f| mesh.degree(f) != 3) {
-            session.warn(format!("{}: polygons are cut into triangles first", path.display()));
-            session
-                .run("triangulating", |p| triangulate(&mut mesh, TriangulationMethod::default(), p))
-                .map_err(in_file)?;
+        if self.is_of_triangles() {
+            cut_polygons(&mut session, &self.input, &mut mesh)?;
         }
-        let before = self.picture.is_some().then(|| mesh.clone());
-        let report = session.run("decimating", |p| self.apply(&mut mesh, p)).map_err(in_file)?;
+        let before = self.pictured.before(&mesh);
+        let (report, bounds) = if let Some(limit) = self.max_hausdorff {
+            let limit = limit.of(bounding_box(&mesh).map_or(0.0, |bounds| bounds.diagonal()));
+            let found = session.run("decimating", |p| self.apply_within(&mut mesh, limit, p));
+            let (report, bounds) = found.map_err(in_file)?;
+            if bounds.is_some_and(|bounds| bounds.upper() > limit) {
+                session.warn(format!(
+                    "{}: that the distance stays below {limit:e} is not sure; see `hausdorff` in the report",
+                    path.display()
+                ));
+            }
+            (report, bounds)
+        } else {
+            let apply = |p: Progress<'_>| self.apply(&mut mesh, f64::INFINITY, p);
+            (session.run("decimating", apply).map_err(in_file)?, None)
+        };
         if report.stop == StopReason::NothingLeft && self.goal.error.is_none() {
             session.warn(format!(
                 "{}: no collapse is left at {} faces; `refusals` in the report says why",
@@ -139,10 +167,7 @@ impl Decimate {
                 report.faces[1]
             ));
         }
-        if let (Some(picture), Some(before)) = (&self.picture, before) {
-            let png = session.run("drawing", |p| picture_of([&before, &mesh], p))?;
-            session.store(picture, &png)?;
-        }
+        self.pictured.draw(&mut session, before.as_ref(), &mesh, &[])?;
         document.set = mesh.to_indexed();
         session.write(&self.output, &document)?;
         let summary = format!(
@@ -157,18 +182,58 @@ impl Decimate {
         );
         let mut told = to_json(&report);
         told["cost"] = json!(self.cost.to_possible_value().map(|v| v.get_name().to_owned()));
+        if let Some(bounds) = bounds {
+            told["hausdorff"] = json!({"lower": bounds.lower(), "upper": bounds.upper()});
+        }
         session.finish(&summary, &told)?;
         Ok(ExitCode::SUCCESS)
     }
 
     /// Whether nothing is asked for that needs the general decimator.
-    fn is_fast(&self) -> bool {
+    fn is_of_triangles(&self) -> bool {
         self.cost == Cost::Quadric && self.max_hausdorff.is_none()
+    }
+
+    /// Decimates such that the Hausdorff distance is surely at most `limit`: vertices of the input are kept that close,
+    /// then the distance is measured both ways, and where it is larger all begins anew with less.
+    fn apply_within(
+        &self,
+        mesh: &mut Mesh,
+        limit: f64,
+        progress: Progress<'_>,
+    ) -> Result<(DecimationReport, Option<HausdorffReport>), Failure> {
+        /// Each costs a decimation; two are the rule.
+        const TRIES: usize = 5;
+        let diagonal = bounding_box(mesh).map_or(0.0, |bounds| bounds.diagonal());
+        if mesh.face_count() == 0 || !(diagonal > 0.0) {
+            return Ok((self.apply(mesh, limit, progress)?, None));
+        }
+        let input = TriangleTree::new(mesh, Progress::NONE)?;
+        let tolerance = (0.02 * limit / diagonal).clamp(1e-6, 1e-2);
+        let options = HausdorffOptions { tolerance, queries: 5_000_000 };
+        let (mut inner, mut tries) = (limit, 0);
+        loop {
+            let part = |from: f64, to: f64| {
+                let share = |x: f64| (tries as f64 + x) / TRIES as f64;
+                progress.part(share(from), share(to))
+            };
+            let mut copy = mesh.clone();
+            let report = self.apply(&mut copy, inner, part(0.0, 0.7))?;
+            let result = TriangleTree::new(&copy, Progress::NONE)?;
+            let bounds = hausdorff(&input, &result, &options, part(0.7, 1.0))?;
+            tries += 1;
+            if bounds.upper() <= limit || tries == TRIES {
+                *mesh = copy;
+                return Ok((report, Some(bounds)));
+            }
+            inner *= (0.95 * limit / bounds.upper()).min(0.9);
+        }
     }
 
     fn apply(
         &self,
         mesh: &mut Mesh,
+        max_distance: f64,
         progress: Progress<'_>,
     ) -> Result<DecimationReport, remesh::Error> {
         let diagonal = bounding_box(mesh).map_or(0.0, |bounds| bounds.diagonal());
@@ -180,8 +245,15 @@ impl Decimate {
         let boundary = if self.keep_boundary { Boundary::Kept } else { Boundary::Weighted };
         let fixed = VertexSet::new();
         let angle = self.feature_angle.map(f64::to_radians);
-        if self.is_fast() {
-            let mut options = QuadricOptions { boundary, ..QuadricOptions::default() };
+        if self.is_of_triangles() {
+            let start = if self.fast { QuadricOptions::fast() } else { QuadricOptions::default() };
+            let mut options = QuadricOptions { boundary, ..start };
+            if let Some(weight) = self.attribute_weight {
+                options.attribute_weight = weight.of(1.0);
+            }
+            if let Some(rounds) = self.polish {
+                options.polish = rounds;
+            }
             if let Some(angle) = angle {
                 options.feature_angle = angle;
             }
@@ -194,7 +266,6 @@ impl Decimate {
             }
             return decimate_quadric(mesh, target, &fixed, &options, progress);
         }
-        let max_distance = self.max_hausdorff.map_or(f64::INFINITY, |limit| limit.of(diagonal));
         let options = DecimationOptions { boundary, max_distance, ..DecimationOptions::default() };
         let mut features: EdgeSet = seam_edges(mesh);
         if let Some(angle) = angle {
@@ -232,24 +303,4 @@ fn to_json(report: &DecimationReport) -> Value {
             "distance": refusals.distance,
         },
     })
-}
-
-/// The mesh before and after, side by side.
-fn picture_of(meshes: [&Mesh; 2], progress: Progress<'_>) -> Result<Vec<u8>, dgp::view::Error> {
-    use dgp::view::{Framing, Model, Panel, RenderOptions, Scene, Stroke, Style, render};
-    /// More faces than this make a wireframe black.
-    const WIRED: usize = 20_000;
-    let [before, after] = meshes;
-    let panels = [("before", before), ("after", after)].map(|(name, mesh)| {
-        let wireframe = if mesh.face_count() > WIRED { Stroke::NONE } else { Stroke::THIN };
-        let style = Style { wireframe, boundary: Stroke::BOLD, ..Style::faceted() };
-        Panel::new(
-            format!("{name}: {} faces", mesh.face_count()),
-            Model { style, ..Model::new(mesh) },
-        )
-    });
-    let scene = Scene { panels: panels.into() };
-    let framing = Framing::Shared;
-    let options = RenderOptions { width: 1200, height: 600, framing, ..RenderOptions::default() };
-    Ok(render(&scene, &options, progress)?.0.to_png())
 }

@@ -1,14 +1,16 @@
 //! `dgp fill`: closes holes.
 
-use std::{fmt::Write, path::PathBuf, process::ExitCode};
+use std::{fmt::Write, process::ExitCode};
 
 use clap::Args;
 use dgp::{
-    mesh::{Color, FaceSet, Mesh, Progress},
+    mesh::Color,
     remesh::{FillOptions, FillReport, HoleOutcome, LongestRim, Patch, fill_holes},
+    view::{Mark, Marked},
 };
 use serde_json::{Value, json};
 
+use super::before_after::BeforeAfter;
 use crate::{
     cli::{Common, Input, Output},
     failure::Failure,
@@ -40,9 +42,8 @@ pub(crate) struct Fill {
     /// How much longer than those around edges of `--refine` and `--fair` may be
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     density: Option<f64>,
-    /// Draw the mesh before and after into a PNG, new faces in color
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
+    #[command(flatten)]
+    pictured: BeforeAfter,
 }
 
 fn factor(text: &str) -> Result<f64, String> {
@@ -56,7 +57,7 @@ impl Fill {
         let mut document = session.read(&self.input)?;
         let mut mesh = session.mesh(&self.input, &document)?;
         let path = &self.input.path;
-        let before = self.picture.is_some().then(|| mesh.clone());
+        let before = self.pictured.before(&mesh);
         let options = self.options();
         let report = session
             .run("filling", |progress| fill_holes(&mut mesh, &options, progress))
@@ -68,10 +69,12 @@ impl Fill {
                 path.display()
             ));
         }
-        if let (Some(picture), Some(before)) = (&self.picture, before) {
-            let png = session.run("drawing", |p| picture_of([&before, &mesh], &report.faces, p))?;
-            session.store(picture, &png)?;
-        }
+        let fresh = Mark {
+            elements: Marked::Faces(report.faces.clone()),
+            color: Color::from_rgb8([0xe8, 0x9c, 0x3f]),
+            width: 1.0,
+        };
+        self.pictured.draw(&mut session, before.as_ref(), &mesh, &[fresh])?;
         document.set = mesh.to_indexed();
         session.write(&self.output, &document)?;
         let mut summary = format!(
@@ -131,33 +134,4 @@ fn to_json(report: &FillReport) -> Value {
         "faces": report.faces.len(),
         "holes": holes.collect::<Vec<Value>>(),
     })
-}
-
-/// The mesh before and after, side by side.
-fn picture_of(
-    meshes: [&Mesh; 2],
-    new: &FaceSet,
-    progress: Progress<'_>,
-) -> Result<Vec<u8>, dgp::view::Error> {
-    use dgp::view::{
-        Framing, Mark, Marked, Model, Panel, RenderOptions, Scene, Stroke, Style, render,
-    };
-    let [before, after] = meshes;
-    let fresh = Mark {
-        elements: Marked::Faces(new.clone()),
-        color: Color::from_rgb8([0xe8, 0x9c, 0x3f]),
-        width: 1.0,
-    };
-    let panels = [("before", before, Vec::new()), ("after", after, vec![fresh])];
-    let panels = panels.map(|(name, mesh, marks)| {
-        let style = Style { boundary: Stroke::BOLD, marks, ..Style::faceted() };
-        Panel::new(
-            format!("{name}: {} faces", mesh.face_count()),
-            Model { style, ..Model::new(mesh) },
-        )
-    });
-    let scene = Scene { panels: panels.into() };
-    let framing = Framing::Shared;
-    let options = RenderOptions { width: 1200, height: 600, framing, ..RenderOptions::default() };
-    Ok(render(&scene, &options, progress)?.0.to_png())
 }

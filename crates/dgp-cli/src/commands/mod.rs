@@ -1,5 +1,6 @@
 //! The commands, one a file.
 
+mod before_after;
 mod cage;
 mod check;
 mod compare;

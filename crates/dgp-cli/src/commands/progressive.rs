@@ -5,13 +5,14 @@ use std::{path::Path, process::ExitCode};
 use clap::Args;
 use dgp::{
     io::Document,
-    mesh::TriangulationMethod,
-    mesh::triangulate,
     remesh::{ProgressiveMesh, QuadricOptions, Target},
 };
 use serde_json::json;
 
-use super::decimate::{Amount, amount};
+use super::{
+    before_after::cut_polygons,
+    decimate::{Amount, amount},
+};
 use crate::{
     cli::{Common, Input, Output},
     failure::Failure,
@@ -25,7 +26,7 @@ const EXTENSION: &str = "dgpp";
 ///
 /// A file whose name ends in `.dgpp` is a progressive mesh, as input and as output: coarse levels come first, so
 /// that it can be shown while it arrives. Of any other mesh one is made; the finest level is the mesh itself, bit for
-/// bit. Data other than positions are not kept.
+/// bit. Data of vertices are kept at every level, and those of corners where no seam is.
 #[derive(Debug, Args)]
 pub(crate) struct Progressive {
     #[command(flatten)]
@@ -91,6 +92,7 @@ impl Progressive {
             "level": levels.level(),
             "vertices": levels.vertex_count(),
             "faces": levels.face_count(),
+            "attributes": levels.column_names().collect::<Vec<_>>(),
         });
         session.finish(&summary, &report)?;
         Ok(ExitCode::SUCCESS)
@@ -116,17 +118,16 @@ impl Progressive {
         let path = &self.input.path;
         let document = session.read(&self.input)?;
         let mut mesh = session.mesh(&self.input, &document)?;
-        if mesh.faces().any(|f| mesh.degree(f) != 3) {
-            session.warn(format!("{}: polygons are cut into triangles first", path.display()));
-            session
-                .run("triangulating", |p| triangulate(&mut mesh, TriangulationMethod::default(), p))
-                .map_err(|failure| failure.in_file(path))?;
-        }
+        cut_polygons(session, &self.input, &mut mesh)?;
         let target = Target::Faces(self.base.count(mesh.face_count()));
         let options = QuadricOptions::default();
-        session
+        let levels = session
             .run("decimating", |p| ProgressiveMesh::new(&mesh, target, &options, p))
-            .map_err(|failure| failure.in_file(path))
+            .map_err(|failure| failure.in_file(path))?;
+        for what in levels.left_out() {
+            session.warn(format!("{}: levels do not have {what}", path.display()));
+        }
+        Ok(levels)
     }
 }
 

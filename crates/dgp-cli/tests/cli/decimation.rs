@@ -26,6 +26,9 @@ fn every_target_and_cost_gives_a_mesh_that_passes_the_check() {
         "--faces 200 --cost curvature --feature-angle 60",
         "--faces 200 --max-hausdorff 5%",
         "--faces 200 --keep-boundary --feature-angle 30",
+        "--faces 200 --fast",
+        "--faces 200 --polish 2",
+        "--faces 200 --attribute-weight 5%",
     ] {
         let (code, value) = dgp.json(&format!("decimate sphere.ply -o r.ply {options}"));
         assert_eq!(code, 0, "{options}: {value}");
@@ -55,10 +58,42 @@ fn what_cannot_be_reached_is_said_and_polygons_are_cut() {
         ("--faces 3 --vertices 3", "cannot be used with"),
         ("--faces some", "neither a number"),
         ("--faces 10 --feature-angle 270", "no angle"),
+        ("--faces 10 --fast --cost length", "--cost quadric"),
+        ("--faces 10 --fast --polish 1", "cannot be used with"),
     ] {
         let output = dgp.run(&format!("decimate sphere.ply -o r.ply {options}"));
         assert_eq!(output.status.code(), Some(2), "{options}");
         assert!(error(&output).contains(message), "{options}: {}", error(&output));
+    }
+}
+
+#[test]
+fn the_distance_asked_for_is_sure_both_ways() {
+    let dgp = with_sphere();
+    let (code, value) = dgp.json("decimate sphere.ply -o r.ply --faces 0 --max-hausdorff 2%");
+    assert_eq!(code, 0, "{value}");
+    let diagonal = 2.0 * 3_f64.sqrt();
+    let upper = value["report"]["hausdorff"]["upper"].as_f64().unwrap();
+    assert!(upper <= 0.02 * diagonal * 1.001 && upper > 0.005 * diagonal, "{upper}");
+    let (_, value) = dgp.json("compare r.ply sphere.ply");
+    let lower = value["report"]["hausdorff"]["lower"].as_f64();
+    assert!(lower.is_none_or(|lower| lower <= upper), "{value}");
+}
+
+#[test]
+fn progressive_files_keep_data() {
+    let dgp = with_sphere();
+    assert_eq!(dgp.run("curvature sphere.ply -o c.ply").status.code(), Some(0));
+    let (code, value) = dgp.json("progressive c.ply -o c.dgpp --base 20");
+    assert_eq!(code, 0, "{value}");
+    let names = value["report"]["attributes"].clone();
+    assert!(!names.as_array().unwrap().is_empty(), "{value}");
+    let (code, value) = dgp.json("progressive c.dgpp -o r.ply --faces 100");
+    assert_eq!((code, &value["report"]["attributes"]), (0, &names));
+    let (_, value) = dgp.json("info r.ply");
+    let there = value["report"]["attributes"]["vertex"].to_string();
+    for name in names.as_array().unwrap() {
+        assert!(there.contains(name.as_str().unwrap()), "{there}");
     }
 }
 

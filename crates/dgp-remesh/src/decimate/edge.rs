@@ -35,6 +35,8 @@ pub(super) struct Ends<'a> {
     pub(super) b: DVec3,
     pub(super) through: [&'a Through; 2],
     pub(super) remembered: Option<[&'a Quadric; 2]>,
+    /// What data cost, relative to `a`.
+    pub(super) data: Option<Quadric>,
     /// How much the squared length of the edge counts.
     pub(super) slack: f64,
     /// Twice the vector area of the triangles around each end, those at the edge only with the first.
@@ -50,6 +52,9 @@ impl Ends<'_> {
         let mut cost = times(a, x.to_array()).dot(x) + times(b, y.to_array()).dot(y);
         if let Some([p, q]) = self.remembered {
             cost += p.at(x) + q.at(y);
+        }
+        if let Some(data) = &self.data {
+            cost += data.at(x);
         }
         cost.max(0.0)
     }
@@ -97,6 +102,14 @@ impl Ends<'_> {
             at_a += p.c + q.at(-e);
             at_b += p.at(e) + q.c;
             pull -= p.times(0.5 * e) + p.b - q.times(0.5 * e) + q.b;
+        }
+        if let Some(data) = &self.data {
+            for (x, more) in a.iter_mut().zip(data.a) {
+                *x += more;
+            }
+            at_a += data.c;
+            at_b += data.at(e);
+            pull -= data.times(0.5 * e) + data.b;
         }
         let damp = damping * trace(&a);
         for k in [0, 3, 5] {

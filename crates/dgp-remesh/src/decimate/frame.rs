@@ -1,6 +1,6 @@
 //! The coordinates in which decimation by quadrics computes.
 
-use dgp_mesh::{DVec3, Mesh, VertexId, measure::bounding_box};
+use dgp_mesh::{DVec3, Mesh, VertexId, VertexMap, measure::bounding_box};
 
 use super::rings::NONE;
 
@@ -26,11 +26,11 @@ impl Frame {
         (p - self.center) / self.unit
     }
 
-    /// Where a vertex is that holds the position of `held`, or else is at `p` inside.
-    pub(super) fn position(&self, mesh: &Mesh, held: u32, p: DVec3) -> DVec3 {
+    /// Where a vertex is that holds the position that `held` has in the input, or else is at `p` inside.
+    pub(super) fn position(&self, input: &VertexMap<DVec3>, held: u32, p: DVec3) -> DVec3 {
         match held {
             NONE => p * self.unit + self.center,
-            held => mesh.position(VertexId::new(held as usize)),
+            held => input[VertexId::new(held as usize)],
         }
     }
 }

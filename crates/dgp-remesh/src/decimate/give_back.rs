@@ -2,7 +2,7 @@
 
 use dgp_mesh::{Connectivity, DVec3, Editor, FaceId, FaceMap, Mesh, VertexId, VertexMap};
 
-use super::{quadric::State, report::DecimationReport, rings::NONE};
+use super::{report::DecimationReport, rings::NONE, state::State};
 use crate::Error;
 
 impl State {
@@ -19,7 +19,11 @@ impl State {
             }
         }
         let final_position = |v: u32| {
-            self.frame.position(mesh, self.held[v as usize], self.rings.positions[v as usize])
+            self.frame.position(
+                mesh.positions(),
+                self.held[v as usize],
+                self.rings.positions[v as usize],
+            )
         };
         let positions: Vec<DVec3> = kept.iter().map(|&v| final_position(v)).collect();
         for v in 0..n as u32 {
@@ -49,8 +53,12 @@ impl State {
             face_map,
         };
         if self.keeps_log {
-            self.replay(mesh);
+            let input = mesh.positions().clone();
+            self.replay(mesh, &input);
             mesh.set_positions(positions.into());
+            if let Some(channels) = &self.channels {
+                channels.give_back(&self.rings, &number, mesh);
+            }
         } else {
             let list = self.rings.face_list(|v| VertexId::new(number[v as usize] as usize));
             let connectivity = Connectivity::from_faces(kept.len(), &list)?;
@@ -60,13 +68,13 @@ impl State {
     }
 
     /// Does the collapses again where data travel.
-    fn replay(&self, mesh: &mut Mesh) {
+    fn replay(&self, mesh: &mut Mesh, input: &VertexMap<DVec3>) {
         let mut editor = Editor::new(mesh);
         for done in &self.log {
             let [from, to] = [done.from, done.to].map(|v| VertexId::new(v as usize));
             let h =
                 editor.mesh().halfedge_between(from, to).expect("the same edges as in the rings");
-            let position = self.frame.position(editor.mesh(), NONE, done.position);
+            let position = self.frame.position(input, done.held, done.position);
             editor.collapse_at(h, position).expect("the same conditions as in the rings");
         }
         let _ = editor.finish();

@@ -9,6 +9,7 @@
 //! - Reference: Klein, Liebich, Straßer, "Mesh reduction with error control", Visualization 1996, of which
 //!   this is the direction from input to result, at vertices.
 
+use super::triangle::nearest_point;
 use dgp_mesh::{DVec3, FaceId, FaceMap, HalfedgeId, Mesh, VertexId};
 
 /// The vertices of the input, and which face stands for each.
@@ -77,39 +78,4 @@ impl Nearness {
         }
         true
     }
-}
-
-/// The point of a triangle nearest to `p` (Ericson, "Real-time collision detection", 2005, section 5.1.5).
-fn nearest_point(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let (ab, ac) = (b - a, c - a);
-    let from_a = p - a;
-    let (a1, a2) = (ab.dot(from_a), ac.dot(from_a));
-    if a1 <= 0.0 && a2 <= 0.0 {
-        return a;
-    }
-    let from_b = p - b;
-    let (b1, b2) = (ab.dot(from_b), ac.dot(from_b));
-    if b1 >= 0.0 && b2 <= b1 {
-        return b;
-    }
-    let at_c = a1 * b2 - b1 * a2;
-    if at_c <= 0.0 && a1 >= 0.0 && b1 <= 0.0 {
-        return a + ab * (a1 / (a1 - b1));
-    }
-    let from_c = p - c;
-    let (c1, c2) = (ab.dot(from_c), ac.dot(from_c));
-    if c2 >= 0.0 && c1 <= c2 {
-        return c;
-    }
-    let at_b = c1 * a2 - a1 * c2;
-    if at_b <= 0.0 && a2 >= 0.0 && c2 <= 0.0 {
-        return a + ac * (a2 / (a2 - c2));
-    }
-    let at_a = b1 * c2 - c1 * b2;
-    let (along, rest) = (b2 - b1, c1 - c2);
-    if at_a <= 0.0 && along >= 0.0 && rest >= 0.0 {
-        return b + (c - b) * (along / (along + rest));
-    }
-    let whole = at_a + at_b + at_c;
-    a + ab * (at_b / whole) + ac * (at_c / whole)
 }

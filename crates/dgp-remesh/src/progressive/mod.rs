@@ -15,14 +15,16 @@
 //! - Input: triangles, with holes perhaps.
 //! - Cost: going from a level to another, the corners around the vertices split on the way.
 //! - Guarantees: every level is what decimation had there, bit for bit, from whichever side one comes; the
-//!   finest is the input.
+//!   finest is the input. Data of vertices, and of corners without seams, are those that travel along.
 //! - Reference: Hoppe, "Progressive meshes", SIGGRAPH 1996.
 //! - Departs from it: corners that change hands are listed instead of found between two neighbors, which makes
-//!   a split independent of how triangles are linked. Data other than positions are not kept.
+//!   a split independent of how triangles are linked. Data of faces, and of corners with seams, are not kept.
 
+mod data;
 mod geomorph;
 mod stream;
 
+use data::Column;
 pub use geomorph::Geomorph;
 pub use stream::ProgressiveStream;
 
@@ -34,7 +36,7 @@ use dgp_mesh::{
 use crate::{
     Error, QuadricOptions, Target,
     decimate::{
-        quadric::collapses,
+        quadric::{Done, collapses},
         rings::{NONE, Rings},
     },
 };
@@ -68,6 +70,11 @@ pub struct ProgressiveMesh {
     moved: Vec<u32>,
     /// Where the vertex that is split is at the level on the other side.
     held: Vec<DVec3>,
+    columns: Vec<Column>,
+    /// Numbers of all columns, vertex after vertex as `positions`, and split after split as `held`.
+    values: Vec<f64>,
+    held_values: Vec<f64>,
+    left_out: Vec<String>,
 }
 
 /// What a split does; the vertex that comes is told by its number.
@@ -82,7 +89,8 @@ struct Split {
 
 impl ProgressiveMesh {
     /// Decimates a copy of `mesh` toward `target`, which becomes the base, and keeps all levels between. The
-    /// present level is the finest.
+    /// present level is the finest. `options.polish` is not done, for it is
+    /// the end of one level only; data are mixed as they travel, also where `options.attribute_weight` makes them count.
     ///
     /// Errors: those of [`decimate_quadric`](crate::decimate_quadric).
     pub fn new(
@@ -120,7 +128,14 @@ impl ProgressiveMesh {
             rings.collapse(done.from, done.to, &shared);
             rings.positions[done.to as usize] = done.position;
         }
-        Ok(ordered(mesh, &rings, &log, (&corners, &ends), (&gone, &counts), &held))
+        let (columns, left_out) = data::columns(mesh);
+        let mut result = ordered(mesh, &rings, &log, (&corners, &ends), (&gone, &counts), &held);
+        result.left_out = left_out;
+        if !columns.is_empty() {
+            result.bring_data(mesh, &log, columns);
+        }
+        result.set_level(log.len())?;
+        Ok(result)
     }
 
     /// How many splits there are: the finest level.
@@ -197,6 +212,13 @@ impl ProgressiveMesh {
             self.faces[corner as usize / 3][corner as usize % 3] = vertex;
         }
         std::mem::swap(&mut self.positions[split.vertex as usize], &mut self.held[k]);
+        let width = data::width(&self.columns);
+        if width > 0 {
+            let at = width * split.vertex as usize;
+            let (present, other) =
+                (&mut self.values[at..at + width], &mut self.held_values[width * k..][..width]);
+            present.swap_with_slice(other);
+        }
         if forward {
             self.face_count += usize::from(split.faces);
         } else {
@@ -214,18 +236,35 @@ impl ProgressiveMesh {
         let corners = self.faces().iter().map(|face| face.map(|v| VertexId::new(v as usize)));
         let list = FaceList::from_triangles(corners.collect());
         let positions = VertexMap::from(self.positions().to_vec());
-        Ok(Mesh::new(&IndexedFaceSet::new(positions, list)?)?)
+        let mut mesh = Mesh::new(&IndexedFaceSet::new(positions, list)?)?;
+        self.dress(&mut mesh);
+        Ok(mesh)
+    }
+
+    /// Has the data of `mesh` travel along the collapses; the present level is the base.
+    fn bring_data(&mut self, mesh: &Mesh, log: &[Done], columns: Vec<Column>) {
+        let travelled = data::travel(mesh, &columns, log);
+        let width = data::width(&columns);
+        let mut is_left = vec![true; mesh.vertex_count()];
+        for done in log {
+            is_left[done.from as usize] = false;
+        }
+        let base = travelled.at_base.chunks_exact(width).zip(&is_left).filter(|(_, left)| **left);
+        self.values = base.flat_map(|(value, _)| value).copied().collect();
+        self.values.extend(travelled.gone.chunks_exact(width).rev().flatten());
+        self.held_values = travelled.before.chunks_exact(width).rev().flatten().copied().collect();
+        self.columns = columns;
     }
 }
 
 /// The triangles that go in a collapse, with their corners.
 type Gone = [(u32, [u32; 3]); 2];
 
-/// Numbers vertices and faces in the order in which they come when the collapses are undone.
+/// Numbers vertices and faces in the order in which they come when the collapses are undone; at the base.
 fn ordered(
     mesh: &Mesh,
     rings: &Rings,
-    log: &[crate::decimate::quadric::Done],
+    log: &[Done],
     (corners, ends): (&[u32], &[usize]),
     (gone, counts): (&[Gone], &[u8]),
     before: &[DVec3],
@@ -268,7 +307,7 @@ fn ordered(
     }
     let positions = vertices.iter().map(|&v| rings.positions[v as usize]).collect();
     let held = before.iter().rev().copied().collect();
-    let mut result = ProgressiveMesh {
+    ProgressiveMesh {
         positions,
         faces: corner_lists,
         face_count: base[1],
@@ -277,7 +316,9 @@ fn ordered(
         splits,
         moved,
         held,
-    };
-    result.set_level(log.len()).expect("as many levels as collapses");
-    result
+        columns: Vec::new(),
+        values: Vec::new(),
+        held_values: Vec::new(),
+        left_out: Vec::new(),
+    }
 }

@@ -1,24 +1,33 @@
 //! Progressive meshes as bytes that can be used while they arrive.
 //!
 //! ```text
-//! "DGPPROG" 0x1a   version u32 = 1   base vertices u32   base faces u32   splits u32   checksum u32
-//! block of the base:    bytes u32   checksum u32   positions 3 × f64 …   corners 3 × varint …
+//! "DGPPROG" 0x1a   version u32 = 2   base vertices u32   base faces u32   splits u32   checksum u32
+//! block of the base:    bytes u32   checksum u32
+//!   columns varint, each: type u8, of vertices 0 or corners 1 u8, bytes of its name varint, its name in UTF-8
+//!   positions 3 × f64 …   corners 3 × varint …   values of all columns f64 …
 //! blocks of splits:     splits u32   bytes u32   checksum u32
 //!   vertex varint, faces varint (1 or 2), their corners 3 × varint each,
 //!   count of corners that change hands varint, each as difference to the one before varint,
 //!   position of the vertex afterwards 3 × f64, of the one that comes 3 × f64
+//!   values of the vertex afterwards f64 …, of the one that comes f64 …
 //! ```
 //!
 //! All little-endian; a varint has 7 bits a byte, the lowest first, and 128 says that another follows.
-//! Checksums are CRC-32 (IEEE 802.3) of the bytes between.
+//! Checksums are CRC-32 (IEEE 802.3) of the bytes between. Files of version 1 have no columns and no values;
+//! they are read.
 
 use dgp_mesh::DVec3;
 
-use super::{ProgressiveMesh, Split};
+use super::{
+    ProgressiveMesh, Split,
+    data::{Column, KINDS, width},
+};
 use crate::Error;
 
 const MAGIC: [u8; 8] = *b"DGPPROG\x1a";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+/// The version without data, which is read but not written.
+const PLAIN: u32 = 1;
 const HEADER: usize = 28;
 /// Splits of a block: as many as arrive together.
 const BLOCK: usize = 512;
@@ -37,8 +46,16 @@ impl ProgressiveMesh {
         header.extend(sum.to_le_bytes());
 
         let mut base = Vec::new();
+        push_varint(&mut base, self.columns.len() as u32);
+        for column in &self.columns {
+            let kind = KINDS.iter().position(|&kind| kind == column.kind).unwrap_or_default();
+            base.extend([kind as u8, u8::from(column.is_of_corners)]);
+            push_varint(&mut base, column.name.len() as u32);
+            base.extend(column.name.as_bytes());
+        }
         at_base.positions().iter().for_each(|&p| push_position(&mut base, p));
         at_base.faces().iter().flatten().for_each(|&v| push_varint(&mut base, v));
+        push_numbers(&mut base, &at_base.values[..width(&self.columns) * vertices]);
         let mut bytes = header;
         push_block(&mut bytes, &base);
         for first in (0..self.splits.len()).step_by(BLOCK) {
@@ -69,6 +86,9 @@ impl ProgressiveMesh {
         }
         push_position(block, self.held[k]);
         push_position(block, self.positions[self.base[0] + k]);
+        let width = width(&self.columns);
+        push_numbers(block, &self.held_values[width * k..][..width]);
+        push_numbers(block, &self.values[width * (self.base[0] + k)..][..width]);
         self.change(k, true);
         self.level += 1;
     }
@@ -105,6 +125,7 @@ pub struct ProgressiveStream {
     /// Bytes that were used.
     offset: u64,
     expected: Option<[usize; 3]>,
+    version: u32,
     mesh: Option<ProgressiveMesh>,
 }
 
@@ -176,8 +197,10 @@ impl ProgressiveStream {
             }
             if let Some(version) = word(8)
                 && version != VERSION as usize
+                && version != PLAIN as usize
             {
-                let what = format!("it has version {version}, but only {VERSION} is known");
+                let what =
+                    format!("it has version {version}, but only {PLAIN} and {VERSION} are known");
                 return Err(self.damaged(&what));
             }
             let (Some(vertices), Some(faces), Some(splits), Some(sum)) =
@@ -188,6 +211,7 @@ impl ProgressiveStream {
             if checksum(&rest[..HEADER - 4]) as usize != sum {
                 return Err(self.damaged("the checksum of the header is wrong"));
             }
+            self.version = word(8).unwrap_or(0) as u32;
             self.expected = Some([vertices, faces, splits]);
             return Ok(HEADER);
         };
@@ -205,7 +229,8 @@ impl ProgressiveStream {
         }
         let mut cursor = Cursor { bytes: block };
         if is_base {
-            let mesh = base(&mut cursor, expected).filter(|_| cursor.bytes.is_empty());
+            let mesh =
+                base(&mut cursor, expected, self.version).filter(|_| cursor.bytes.is_empty());
             self.mesh = Some(mesh.ok_or_else(|| self.damaged("the base is inconsistent"))?);
         } else {
             if count == 0 || count > expected[2] - there {
@@ -224,13 +249,19 @@ impl ProgressiveStream {
 }
 
 /// The base; `None` if it is not what the header says or names what is not there.
-fn base(cursor: &mut Cursor<'_>, [vertices, faces, _]: [usize; 3]) -> Option<ProgressiveMesh> {
+fn base(
+    cursor: &mut Cursor<'_>,
+    [vertices, faces, _]: [usize; 3],
+    version: u32,
+) -> Option<ProgressiveMesh> {
+    let columns = if version == PLAIN { Vec::new() } else { columns(cursor)? };
     // Each vertex takes 24 bytes and each face 3 at least: no memory is asked for that cannot be filled.
     if cursor.bytes.len() < vertices.checked_mul(24)?.checked_add(faces.checked_mul(3)?)? {
         return None;
     }
     let positions = (0..vertices).map(|_| cursor.position()).collect::<Option<Vec<DVec3>>>()?;
     let faces = (0..faces).map(|_| cursor.face(vertices as u32)).collect::<Option<Vec<_>>>()?;
+    let values = cursor.numbers(width(&columns).checked_mul(vertices)?)?;
     Some(ProgressiveMesh {
         positions,
         base: [vertices, faces.len()],
@@ -240,7 +271,29 @@ fn base(cursor: &mut Cursor<'_>, [vertices, faces, _]: [usize; 3]) -> Option<Pro
         splits: Vec::new(),
         moved: Vec::new(),
         held: Vec::new(),
+        columns,
+        values,
+        held_values: Vec::new(),
+        left_out: Vec::new(),
     })
+}
+
+/// The columns that the base tells of.
+fn columns(cursor: &mut Cursor<'_>) -> Option<Vec<Column>> {
+    let count = cursor.varint()?;
+    let mut columns: Vec<Column> = Vec::new();
+    for _ in 0..count {
+        let [kind, place] = cursor.bytes(2)?.try_into().ok()?;
+        let kind = *KINDS.get(usize::from(kind))?;
+        let is_of_corners = [false, true].get(usize::from(place)).copied()?;
+        let length = cursor.varint()? as usize;
+        let name = std::str::from_utf8(cursor.bytes(length)?).ok()?.to_owned();
+        if columns.iter().any(|c| c.name == name && c.is_of_corners == is_of_corners) {
+            return None;
+        }
+        columns.push(Column { name, kind, is_of_corners });
+    }
+    Some(columns)
 }
 
 /// Reads a split and does it; `None` if it does not fit the level it is for, which then stays.
@@ -267,6 +320,10 @@ fn split(cursor: &mut Cursor<'_>, mesh: &mut ProgressiveMesh) -> Option<()> {
         moved.push(corner);
     }
     let (after, position) = (cursor.position()?, cursor.position()?);
+    let width = width(&mesh.columns);
+    let (values_after, values) = (cursor.numbers(width)?, cursor.numbers(width)?);
+    mesh.held_values.extend(values_after);
+    mesh.values.extend(values);
     mesh.moved.extend(moved);
     mesh.held.push(after);
     mesh.positions.push(position);
@@ -279,7 +336,19 @@ struct Cursor<'a> {
     bytes: &'a [u8],
 }
 
-impl Cursor<'_> {
+impl<'a> Cursor<'a> {
+    fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (found, rest) = self.bytes.split_at_checked(count)?;
+        self.bytes = rest;
+        Some(found)
+    }
+
+    fn numbers(&mut self, count: usize) -> Option<Vec<f64>> {
+        let bytes = self.bytes(count.checked_mul(8)?)?;
+        let numbers = bytes.chunks_exact(8).map(|b| b.try_into().map(f64::from_le_bytes));
+        numbers.collect::<Result<_, _>>().ok()
+    }
+
     fn varint(&mut self) -> Option<u32> {
         let mut value = 0_u64;
         for shift in (0..35).step_by(7) {
@@ -318,6 +387,10 @@ fn push_block(bytes: &mut Vec<u8>, block: &[u8]) {
 
 fn push_position(bytes: &mut Vec<u8>, p: DVec3) {
     p.to_array().iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+}
+
+fn push_numbers(bytes: &mut Vec<u8>, numbers: &[f64]) {
+    bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
 }
 
 fn push_varint(bytes: &mut Vec<u8>, mut value: u32) {

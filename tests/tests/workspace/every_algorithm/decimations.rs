@@ -2,7 +2,7 @@
 
 use dgp_mesh::{EdgeSet, HalfedgeId, Mesh, Progress, VertexSet, measure::bounding_box};
 use dgp_remesh::{
-    CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost, Memory, Patch,
+    CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost, Memory, Order, Patch,
     Placement, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate, decimate_quadric,
     fill_holes, seam_edges, sharp_edges,
 };
@@ -27,6 +27,15 @@ pub(crate) fn decimations() -> Vec<Algorithm> {
                 ..QuadricOptions::default()
             };
             quadric(m, &options, p)
+        }),
+        mesh("decimate_quadric, fast", |m, p| quadric(m, &QuadricOptions::fast(), p)),
+        mesh("decimate_quadric in passes, polished", |m, p| {
+            let options =
+                QuadricOptions { order: Order::Passes, polish: 2, ..QuadricOptions::default() };
+            quadric(m, &options, p)
+        }),
+        mesh("decimate_quadric with data", |m, p| {
+            quadric(m, &QuadricOptions { attribute_weight: 0.1, ..QuadricOptions::default() }, p)
         }),
         mesh("decimate by length", |m, p| any(m, &mut LengthCost, p)),
         mesh("decimate by curvature", |m, p| any(m, &mut CurvatureCost, p)),
