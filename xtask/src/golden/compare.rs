@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 49] = [
+pub(crate) const QUANTITIES: [(&str, &str); 56] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -65,6 +65,13 @@ pub(crate) const QUANTITIES: [(&str, &str); 49] = [
     ("segment_any", "equal"),
     ("box_faces", "equal"),
     ("self_intersections", "equal"),
+    ("self_intersects", "equal"),
+    ("degenerate_faces", "equal"),
+    ("needles", "equal"),
+    ("caps", "equal"),
+    ("joined_edges", "equal"),
+    ("soup_points", "equal"),
+    ("soup_polygons", "equal"),
     ("hausdorff", "intervals overlap"),
 ];
 

@@ -8,6 +8,7 @@ mod compare;
 mod estimates;
 mod facts;
 mod inputs;
+mod mending;
 mod refined;
 mod spatial;
 mod stored;
@@ -42,6 +43,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
             let mut table = Table::default();
             spatial::compare(&peers, &folder, &mut table)?;
+            mending::compare(&peers, &folder, &mut table)?;
             table.print();
             return table.verdict();
         }
@@ -67,6 +69,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     estimates::compare(&peers, &folder, &mut table)?;
     refined::compare(&peers, &folder, &mut table)?;
     spatial::compare(&peers, &folder, &mut table)?;
+    mending::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

@@ -6,6 +6,7 @@ mod elements;
 mod filling;
 mod folder;
 mod operators;
+mod repairing;
 mod spectra;
 mod subdivision;
 mod subdivision_tables;

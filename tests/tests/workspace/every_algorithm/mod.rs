@@ -5,6 +5,7 @@ mod decimations;
 mod inputs;
 mod laplacians;
 mod outcome;
+mod repairs;
 mod spatial;
 mod subdivisions;
 mod table;

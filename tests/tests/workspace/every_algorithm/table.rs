@@ -20,7 +20,7 @@ use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke
 
 use super::{
     decimations::decimations, inputs::Input, laplacians::laplacians, outcome::Outcome,
-    spatial::spatial, subdivisions::subdivisions,
+    repairs::repairs, spatial::spatial, subdivisions::subdivisions,
 };
 
 /// A name and what to run.
@@ -59,6 +59,7 @@ pub(crate) fn algorithms() -> Vec<Algorithm> {
         laplacians(),
         subdivisions(),
         decimations(),
+        repairs(),
         pictures_and_files(),
     ]
     .into_iter()
