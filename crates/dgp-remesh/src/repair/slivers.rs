@@ -9,8 +9,8 @@
 //!   a and b become one                        d
 //! ```
 //!
-//! A needle goes by the collapse of its shortest edge into the end where the surface bends more, so that
-//! corners and creases stay. A cap goes by the flip of its longest edge, at a rim by its removal.
+//! A needle goes by the collapse of its shortest edge into the end that is nearer to the planes of the faces
+//! around the other, so that corners and creases stay. A cap goes by the flip of its longest edge, at a rim by its removal.
 //!
 //! - Input: a mesh of any polygons; only triangles are looked at.
 //! - Cost: O(F) for each pass; a pass that changes nothing is the last.
@@ -243,7 +243,7 @@ impl Work<'_, '_> {
         [first, mesh.next(first), mesh.prev(first)]
     }
 
-    /// Collapses an edge into the end where the surface bends more.
+    /// Collapses an edge into the end where that changes the surface less.
     fn try_collapse(&mut self, side: HalfedgeId) -> bool {
         let mesh = self.editor.mesh();
         let length =
@@ -251,9 +251,9 @@ impl Work<'_, '_> {
         if length > self.limit {
             return false;
         }
-        let (into_end, into_start) = (side, side.twin());
-        let [start, end] = [mesh.from(side), mesh.to(side)].map(|v| self.bend(v));
-        let order = if start > end { [into_start, into_end] } else { [into_end, into_start] };
+        let (forward, back) = (side, side.twin());
+        let is_back = self.cost(back) < self.cost(forward);
+        let order = if is_back { [back, forward] } else { [forward, back] };
         for h in order {
             let mesh = self.editor.mesh();
             let (from, to) = (mesh.from(h), mesh.to(h));
@@ -271,18 +271,32 @@ impl Work<'_, '_> {
         false
     }
 
-    /// How much the surface bends at a vertex: the largest angle between the normal of a face and their
-    /// mean, as one minus its cosine. A rim counts as more.
-    fn bend(&self, v: VertexId) -> f64 {
+    /// How far the surface is from where it was when the start of `h` moves to its end: the largest
+    /// distance of the end from the planes of the faces at the start, and from its rim.
+    fn cost(&self, h: HalfedgeId) -> f64 {
+        /// Below this the normal of a triangle is rounding.
+        const FLAT: f64 = 1e-9;
         let mesh = self.editor.mesh();
-        let normals: Vec<DVec3> = mesh
-            .vertex_faces(v)
-            .filter(|&f| !is_sliver(mesh, f, self.options))
-            .map(|f| mesh.face_normal(f))
-            .collect();
-        let mean = normals.iter().sum::<DVec3>().normalize_or_zero();
-        let bend = normals.iter().map(|n| 1.0 - n.dot(mean)).fold(0.0, f64::max);
-        if mesh.is_boundary_vertex(v) { bend + 2.0 } else { bend }
+        let (from, to) = (mesh.from(h), mesh.to(h));
+        let (start, end) = (mesh.position(from), mesh.position(to));
+        let mut cost: f64 = 0.0;
+        for f in mesh.vertex_faces(from) {
+            let thin = mesh.triangle(f).is_some_and(|corners| {
+                geometry::breadth(&corners.map(|v| mesh.position(v))) < FLAT
+            });
+            if !thin {
+                cost = cost.max(mesh.face_normal(f).dot(end - start).abs());
+            }
+        }
+        if mesh.is_boundary_vertex(from) {
+            for g in mesh.vertex_halfedges(from).filter(|g| mesh.is_boundary_edge(g.edge())) {
+                let other = mesh.position(mesh.to(g));
+                if mesh.to(g) != to {
+                    cost = cost.max(geometry::height(start, other, end));
+                }
+            }
+        }
+        cost
     }
 
     /// Whether a face would be turned over, or lose its area, when the start of `h` moves to its end.
