@@ -252,8 +252,15 @@ impl Repair {
         if report.is_sound() {
             return Ok(());
         }
-        let found = &report.intersections;
-        let first = match found.found.first() {
+        let cut = &report.intersections;
+        if cut.left.is_empty() {
+            return Err(Failure::Unrepaired(format!(
+                "{} faces without area stay, since to remove them would break the manifold or move it too \
+                 far; raise `--max-move`, or leave them with `--minimal`",
+                report.flat_faces(),
+            )));
+        }
+        let first = match cut.found.first() {
             Some([f, g]) => format!(", such as {f} with {g}"),
             None => String::new(),
         };
@@ -261,9 +268,9 @@ impl Repair {
             "{} pairs of faces pass through each other{first}, and {} are left after {} rounds of cutting \
              within {}% of the faces; raise `--max-rounds` or `--max-removed`, or leave all of them with \
              `--intersections keep`",
-            found.found.len(),
-            found.left.len(),
-            found.rounds,
+            report.meeting,
+            cut.left.len(),
+            cut.rounds,
             100.0 * self.surface.max_removed,
         )))
     }
@@ -294,7 +301,7 @@ fn surface_text(report: &SurfaceRepairReport) -> String {
     let found = &report.intersections.found;
     if !found.is_empty() {
         let first = Elements::FacePairs(found.clone()).first(3);
-        let _ = writeln!(text, "faces that met: {first} ({} pairs in all)", found.len());
+        let _ = writeln!(text, "faces that met: {first} ({} pairs in all)", report.meeting);
     }
     for step in report.steps() {
         let _ = writeln!(text, "{}: {}", step.action.replace('_', " "), step.count);

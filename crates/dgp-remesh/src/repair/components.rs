@@ -78,17 +78,38 @@ pub(super) fn drop_small(
             || sizes[k].volume.is_some_and(|volume| volume < least.volume * largest)
     };
     let small: Vec<usize> = (0..parts.len()).filter(|&k| Some(k) != kept && is_small(k)).collect();
-    let faces: FaceSet = small.iter().flat_map(|&k| parts[k].iter().copied()).collect();
-    if !faces.is_empty() {
-        let mut editor = Editor::new(mesh);
-        let removal = editor.remove_faces(&faces).map_err(Error::Edit)?;
-        for v in removal.isolated {
-            let _ = editor.remove_vertex(v).map_err(Error::Edit)?;
-        }
-        track.compacted(&editor.finish(), &[]);
-    }
+    let small: Vec<Vec<FaceId>> = small.into_iter().map(|k| parts[k].clone()).collect();
+    take_out(mesh, &small, track)?;
     progress.report(1.0)?;
-    Ok(small.into_iter().map(|k| parts[k].clone()).collect())
+    Ok(small)
+}
+
+/// Drops the components of which no face has an area; how many those are.
+pub(super) fn drop_flat(mesh: &mut Mesh, track: &mut Track) -> Result<usize, Error> {
+    let is_flat = |&f: &FaceId| {
+        mesh.triangle(f).is_some_and(|t| geometry::breadth(&t.map(|v| mesh.position(v))) == 0.0)
+    };
+    if !mesh.faces().any(|f| is_flat(&f)) {
+        return Ok(0);
+    }
+    let mut flat = components(mesh).faces();
+    flat.retain(|part| part.iter().all(is_flat));
+    take_out(mesh, &flat, track)?;
+    Ok(flat.len())
+}
+
+fn take_out(mesh: &mut Mesh, parts: &[Vec<FaceId>], track: &mut Track) -> Result<(), Error> {
+    let faces: FaceSet = parts.iter().flatten().copied().collect();
+    if faces.is_empty() {
+        return Ok(());
+    }
+    let mut editor = Editor::new(mesh);
+    let removal = editor.remove_faces(&faces).map_err(Error::Edit)?;
+    for v in removal.isolated {
+        let _ = editor.remove_vertex(v).map_err(Error::Edit)?;
+    }
+    track.compacted(&editor.finish(), &[]);
+    Ok(())
 }
 
 /// How large a component is, relative to the diagonal of all.

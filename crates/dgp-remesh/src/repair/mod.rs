@@ -133,6 +133,9 @@ pub fn repair_surface(
     let part = progress.part(0.33, 0.35);
     let small = components::drop_small(&mut mesh, &options.components, &mut track, part)?;
     report.small_components = small.len();
+    if options.faces.flat_faces == FlatFaces::Remove {
+        report.flat_components = components::drop_flat(&mut mesh, &mut track)?;
+    }
     if let Some(holes) = &options.holes {
         fill_all(&mut mesh, holes, &mut track, &mut report, progress.part(0.35, 0.5))?;
     }
@@ -242,6 +245,14 @@ fn take_turns(
         report.add_intersections(done, &before);
         if !changed {
             break;
+        }
+        if let Some(tolerance) = options.stitch {
+            // Cuts may leave rims that lie along each other.
+            let faces = RepairOptions { components: KeepComponents::All, ..options.faces };
+            let more = rims::stitch(mesh, tolerance, &faces, track, part.part(1.0, 1.0))?;
+            report.stitch.junctions += more.junctions;
+            report.stitch.joined += more.joined;
+            report.stitch.merged += more.merged;
         }
     }
     Ok(())

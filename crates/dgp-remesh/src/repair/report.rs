@@ -1,6 +1,6 @@
 //! What a repair of a surface did, step by step.
 
-use dgp_mesh::{Change, FaceId, FaceMap, RepairReport, VertexId, VertexMap};
+use dgp_mesh::{Change, FaceId, FaceMap, RepairAction, RepairReport, VertexId, VertexMap};
 
 use super::{IntersectionReport, SliverReport, StitchReport, track::Track};
 
@@ -28,6 +28,10 @@ pub struct SurfaceRepairReport {
     /// What passed through itself: pairs found by the faces of the input where both are from there, pairs
     /// left by their ids now.
     pub intersections: IntersectionReport,
+    /// How many pairs of faces met when rims were joined and holes filled.
+    pub meeting: usize,
+    /// Components that were dropped since all of their faces were without area.
+    pub flat_components: usize,
     /// What the last look at the faces changed, by the elements of that time.
     pub last: Vec<Change>,
     /// Open components that were turned to where they are seen from.
@@ -57,9 +61,16 @@ impl SurfaceRepairReport {
             && self.steps().iter().all(|step| leaves(step.action))
     }
 
-    /// Whether no faces pass through each other, as far as was looked for.
+    /// Whether no faces pass through each other, as far as was looked for, and none is without area, as
+    /// far as those were to go.
     pub fn is_sound(&self) -> bool {
-        self.intersections.left.is_empty()
+        self.intersections.left.is_empty() && self.flat_faces() == 0
+    }
+
+    /// How many faces without area stay, since removing them would break the manifold.
+    pub fn flat_faces(&self) -> usize {
+        let left = self.last.iter().find(|c| c.action == RepairAction::LeaveFlatFaces);
+        left.map_or(0, |change| change.elements.len())
     }
 
     /// What was done after a manifold was made, in order; what changed nothing is left out.
@@ -76,6 +87,7 @@ impl SurfaceRepairReport {
         ];
         steps.extend(changes(&self.components));
         steps.extend([
+            ("components", "drop_flat_components", self.flat_components),
             ("components", "drop_small_components", self.small_components),
             ("fill_holes", "fill_holes", self.holes_filled),
             ("fill_holes", "leave_holes", self.holes_left),
@@ -106,6 +118,7 @@ impl SurfaceRepairReport {
         let all = &mut self.intersections;
         let source = |[f, g]: [FaceId; 2]| Some([track.faces[f]?, track.faces[g]?]);
         if all.rounds == 0 {
+            self.meeting = more.found.len();
             all.found = more.found.iter().filter_map(|&pair| source(pair)).collect();
         }
         all.rounds += more.rounds;

@@ -16,14 +16,15 @@
 //! - Guarantees: the result is a manifold. A vertex moves at most as far as welding its rims moves it.
 //! - Reference: Guéziec, Taubin, Lazarus and Horn, "Cutting and stitching: converting sets of polygons to
 //!   manifold surfaces", IEEE TVCG 2001.
-//! - Departs from it: of several edges at one place those stay together that `repair` keeps together.
+//! - Departs from it: of more than two edges at one place only those are joined that belong to one component
+//!   without it.
 
 use std::collections::BTreeMap;
 
 use dgp_mesh::{
-    DVec3, Editor, FaceList, HalfedgeId, IndexedFaceSet, Mesh, Progress, RepairOptions, Tolerance,
-    VertexId, VertexMap, Welding, repair_faces, spatial::TriangleTree, topology::components,
-    weld_as, weld_within,
+    DVec3, Editor, FaceId, FaceList, HalfedgeId, IndexedFaceSet, Mesh, Progress, RepairOptions,
+    Tolerance, VertexId, VertexMap, Welding, repair_faces, spatial::TriangleTree,
+    topology::components, weld_as, weld_within,
 };
 
 use super::{geometry, track::Track};
@@ -94,7 +95,8 @@ pub(super) fn stitch(
     }
     let junctions = find_junctions(mesh, &classes, reach, progress.part(0.2, 0.4))?;
     let mut changed = mesh.clone();
-    report.junctions = split(&mut changed, track, &junctions)?;
+    let mut now = track.clone();
+    report.junctions = split(&mut changed, &mut now, &junctions)?;
     progress.report(0.5)?;
     let classes = if report.junctions > 0 {
         Classes::new(&changed, Tolerance::Distance(reach), progress.part(0.5, 0.6))?
@@ -109,11 +111,18 @@ pub(super) fn stitch(
         // What was asked for at the start is done; here only what joining has brought about.
         let options = RepairOptions { weld: None, hole_edges: 0, ..*options };
         let (faces, mended) = repair_faces(&welded, &options, progress.part(0.6, 0.9))?;
-        changed = Mesh::new(&faces)?;
-        track.welded(&welding);
-        track.repaired(&mended);
+        let joined = Mesh::new(&faces)?;
+        let rims = |mesh: &Mesh| mesh.edges().filter(|&e| mesh.is_boundary_edge(e)).count();
+        if rims(&joined) >= rims(mesh) {
+            // What was joined came apart again, since it made no manifold.
+            progress.report(1.0)?;
+            return Ok(StitchReport::default());
+        }
+        changed = joined;
+        now.welded(&welding);
+        now.repaired(&mended);
     }
-    *mesh = changed;
+    (*mesh, *track) = (changed, now);
     progress.report(1.0)?;
     Ok(report)
 }
@@ -164,23 +173,34 @@ impl Classes {
         let mut sides = Parity::new(parts.count);
         let mut vertices = Parity::new(mesh.vertex_count());
         let mut joined = 0;
+        let mut join = |sides: &mut Parity, group: &[(HalfedgeId, bool)]| {
+            let &[(first, forward), (second, runs_forward)] = group else { return };
+            let (Some(s), Some(t)) = (part(first), part(second)) else { return };
+            // Faces that agree run along a shared edge in opposite directions.
+            let turned = runs_forward == forward;
+            if mesh.face(first) == mesh.face(second) || !sides.join(s, t, turned) {
+                return;
+            }
+            let ends = |h: HalfedgeId| [mesh.from(h).index(), mesh.to(h).index()];
+            let ([a, b], [c, d]) = (ends(first), ends(second));
+            let [c, d] = if turned { [c, d] } else { [d, c] };
+            vertices.join(a, c, false);
+            vertices.join(b, d, false);
+            joined += 1;
+        };
         for group in places.values() {
-            let Some((&(first, forward), others)) = group.split_first() else { continue };
-            for &(h, runs_forward) in others {
-                let (Some(s), Some(t)) = (part(first), part(h)) else { continue };
-                // Faces that agree run along a shared edge in opposite directions.
-                let turned = runs_forward == forward;
-                if mesh.face(first) == mesh.face(h) || !sides.join(s, t, turned) {
-                    continue;
+            join(&mut sides, group);
+        }
+        // Of more than two at a place those that hang together by now, as solids that touch do.
+        for group in places.values().filter(|group| group.len() > 2) {
+            let mut whole: BTreeMap<usize, Vec<(HalfedgeId, bool)>> = BTreeMap::new();
+            for &side in group {
+                if let Some(part) = part(side.0) {
+                    whole.entry(sides.find(part).0).or_default().push(side);
                 }
-                let ends = |h: HalfedgeId| [mesh.from(h).index(), mesh.to(h).index()];
-                let ([a, b], [mut c, mut d]) = (ends(first), ends(h));
-                if !turned {
-                    (c, d) = (d, c);
-                }
-                vertices.join(a, c, false);
-                vertices.join(b, d, false);
-                joined += 1;
+            }
+            for group in whole.values() {
+                join(&mut sides, group);
             }
         }
         let mut originals = VertexMap::new();
@@ -334,19 +354,25 @@ fn keep_chains(mesh: &Mesh, classes: &Classes, found: &mut Vec<Junction>) {
 fn split(mesh: &mut Mesh, track: &mut Track, junctions: &[Junction]) -> Result<usize, Error> {
     let positions: Vec<DVec3> = junctions.iter().map(|j| mesh.position(j.vertex)).collect();
     let mut editor = Editor::new(mesh);
+    let mut pieces = Vec::new();
     let mut start = 0;
     for group in junctions.chunk_by(|s, t| s.side == t.side) {
         let end = editor.mesh().to(group[0].side);
         let mut side = group[0].side;
         for &position in &positions[start..start + group.len()] {
+            let (face, count) = (editor.mesh().face(side), editor.mesh().face_count());
             let new = editor.split_edge_triangles(side.edge(), position).map_err(Error::Edit)?;
+            pieces.extend((count..editor.mesh().face_count()).map(|f| (FaceId::new(f), face)));
             let rest = editor.mesh().halfedge_between(new, end);
             let Some(rest) = rest else { break };
             side = rest;
         }
         start += group.len();
     }
-    let compaction = editor.finish();
-    track.compacted(&compaction, &[]);
+    // Nothing was removed, so that ids stay; each piece of a face comes from where that came from.
+    track.compacted(&editor.finish(), &[]);
+    for (piece, face) in pieces {
+        track.faces[piece] = face.and_then(|f| track.faces[f]);
+    }
     Ok(junctions.len())
 }
