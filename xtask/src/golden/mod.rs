@@ -39,16 +39,22 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             table.print();
             return table.verdict();
         }
-        [option] if option == "--spatial" => {
+        [option] if option == "--mending" => {
             let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
             let mut table = Table::default();
-            spatial::compare(&peers, &folder, &mut table)?;
             mending::compare(&peers, &folder, &mut table)?;
             table.print();
             return table.verdict();
         }
+        [option] if option == "--spatial" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            spatial::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--regenerate" => true,
-        _ => return Err("usage: golden [--regenerate | --refined | --spatial]".into()),
+        _ => return Err("usage: golden [--regenerate | --refined | --spatial | --mending]".into()),
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;
