@@ -3,6 +3,7 @@
 
 // Jets are fitted by Eigen.
 #define CGAL_EIGEN3_ENABLED
+#include "mending.hpp"
 #include "spatial.hpp"
 
 #include <CGAL/Monge_via_jet_fitting.h>
@@ -397,6 +398,7 @@ int main(int count, char** arguments) {
             else if (call.operation == "write-ascii") write(report, raw, call, false);
             else if (call.operation == "write-binary") write(report, raw, call, true);
             else if (spatial::perform(report, raw, call)) {}
+            else if (mending::perform(report, raw, call)) {}
             else throw std::runtime_error("CGAL's driver has no operation " + call.operation);
         }
         report.print();

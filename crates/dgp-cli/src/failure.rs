@@ -150,6 +150,10 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Refused(#[from] EditError),
 
+    /// A repair reached its limits.
+    #[error("{0}")]
+    Unrepaired(String),
+
     /// The options contradict each other or the input.
     #[error("{0}")]
     Usage(String),

@@ -10,7 +10,7 @@
 //! | representations | [`PolygonSoup`], [`IndexedFaceSet`] with its [`FaceList`], [`EdgeList`], [`Connectivity`], [`Mesh`] |
 //! | what is wrong | [`defects`] and its [`DefectReport`] |
 //! | what mends it | [`repair`](repair()), [`repair_faces`], [`RepairOptions`] |
-//! | welding | [`weld_exact`], [`weld_within`], [`weld`] |
+//! | welding | [`weld_exact`], [`weld_within`], [`weld`], [`weld_as`] |
 //! | triangles from polygons | [`triangulate()`] [`triangulate_faces`] [`triangulate_polygon`] |
 //! | where things are | [`spatial`]: nearest points, rays, inside and outside, distances of surfaces |
 //! | edits | [`Editor`], [`reorder`], [`Mesh::reverse`], [`Mesh::validate`] |
@@ -77,7 +77,7 @@ pub use mesh::{Attributes, Mesh};
 pub use progress::{Callback, Cancelled, Progress};
 pub use repair::{
     Change, CrowdedEdges, Facing, FlatFaces, IsolatedVertices, KeepComponents, OneSided,
-    RepairAction, RepairOptions, RepairReport, repair, repair_faces,
+    OppositeFaces, RepairAction, RepairOptions, RepairReport, repair, repair_faces,
 };
 pub use set::{EdgeSet, FaceSet, HalfedgeSet, IdSet, VertexSet};
 pub use soup::PolygonSoup;
@@ -85,4 +85,4 @@ pub use triangulate::{
     OPTIMAL_LIMIT, TriangulationMethod, triangulate, triangulate_faces, triangulate_polygon,
 };
 pub use validate::Invalid;
-pub use weld::{Tolerance, WeldReport, Welding, weld, weld_exact, weld_within};
+pub use weld::{Tolerance, WeldReport, Welding, weld, weld_as, weld_exact, weld_within};

@@ -131,6 +131,21 @@ pub fn weld(
 ) -> Result<(IndexedFaceSet, WeldReport), Error> {
     let points = set.positions().values();
     let welding = weld_within(points, tolerance, progress)?;
+    let welded = weld_as(set, welding);
+    progress.report(1.0)?;
+    Ok(welded)
+}
+
+/// `set` with those vertices made one that `welding` makes one; faces, corners and their data stay in
+/// order.
+///
+/// Faces that name a vertex twice afterwards are kept and reported. What is to be one is the caller's
+/// to say: [`weld`] takes all vertices that are near each other.
+///
+/// # Panics
+/// If `welding` is of another number of vertices.
+pub fn weld_as(set: &IndexedFaceSet, welding: Welding) -> (IndexedFaceSet, WeldReport) {
+    assert_eq!(welding.vertices.len(), set.vertex_count(), "a class for each vertex");
     let mut faces = set.faces().clone();
     for v in faces.corners_mut() {
         *v = welding.vertices[*v];
@@ -149,9 +164,8 @@ pub fn weld(
         welded.vertex_attributes.remove(name);
     }
     welded.face_attributes = set.face_attributes.clone();
-    progress.report(1.0)?;
     let merged = welding.merged();
-    Ok((welded, WeldReport { welding, merged, largest_move, collapsed_faces, moved_to_corners }))
+    (welded, WeldReport { welding, merged, largest_move, collapsed_faces, moved_to_corners })
 }
 
 /// Sets the corner data of the welded set: that of `set` and the vertex data that welding would lose.

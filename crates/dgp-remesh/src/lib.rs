@@ -6,6 +6,7 @@
 //! | any cost, any constraint, any data | [`decimate`](decimate()), [`CollapseCost`], [`LengthCost`], [`CurvatureCost`], [`QuadricCost`] |
 //! | all levels of detail of a mesh, exactly | [`ProgressiveMesh`], [`ProgressiveStream`], [`Geomorph`] |
 //! | holes closed, smoothly | [`fill_holes`], [`FillOptions`] |
+//! | surfaces mended: slivers, T-junctions, self-intersections | [`repair_surface`], [`remove_self_intersections`], [`remove_slivers`], [`stitch_rims`] |
 //! | quadric error metrics | [`Quadric`] |
 //!
 //! ```
@@ -26,6 +27,7 @@ mod error;
 mod fill;
 mod progressive;
 mod quadric;
+mod repair;
 
 pub use decimate::{
     Boundary, CollapseCost, CurvatureCost, DecimationOptions, DecimationReport, LengthCost, Memory,
@@ -36,3 +38,9 @@ pub use error::Error;
 pub use fill::{FillOptions, FillReport, Hole, HoleOutcome, LongestRim, Patch, fill_holes};
 pub use progressive::{Geomorph, ProgressiveMesh, ProgressiveStream};
 pub use quadric::Quadric;
+pub use repair::{
+    IntersectionOptions, IntersectionReport, LeastComponent, OpenSurfaces, RepairStep,
+    SliverOptions, SliverReport, StitchReport, SurfaceRepairOptions, SurfaceRepairReport,
+    cap_faces, drop_small_components, hidden_fronts, needle_faces, remove_self_intersections,
+    remove_slivers, repair_surface, stitch_rims,
+};

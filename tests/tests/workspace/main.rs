@@ -4,6 +4,7 @@ mod broken;
 mod denoising;
 mod every_algorithm;
 mod laplacians;
+mod mended;
 mod random_files;
 mod real_chain;
 mod real_files;

@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 51] = [
+pub(crate) const QUANTITIES: [(&str, &str); 58] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -65,6 +65,13 @@ pub(crate) const QUANTITIES: [(&str, &str); 51] = [
     ("segment_any", "equal"),
     ("box_faces", "equal"),
     ("self_intersections", "equal"),
+    ("self_intersects", "equal"),
+    ("degenerate_faces", "equal"),
+    ("needles", "equal"),
+    ("caps", "equal"),
+    ("joined_edges", "equal"),
+    ("soup_points", "equal"),
+    ("soup_polygons", "equal"),
     ("hausdorff", "intervals overlap"),
     ("decimated_mean", "ours at most 1.05 × theirs"),
     ("decimated_largest", "ours at most 1.25 × theirs"),

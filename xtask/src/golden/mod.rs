@@ -9,6 +9,7 @@ mod decimated;
 mod estimates;
 mod facts;
 mod inputs;
+mod mending;
 mod refined;
 mod spatial;
 mod stored;
@@ -39,6 +40,13 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             table.print();
             return table.verdict();
         }
+        [option] if option == "--mending" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            mending::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--spatial" => {
             let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
             let mut table = Table::default();
@@ -55,7 +63,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
         }
         [option] if option == "--regenerate" => true,
         _ => {
-            return Err("usage: golden [--regenerate | --refined | --spatial | --decimated]".into());
+            return Err("usage: golden [--regenerate | --refined | --spatial | --decimated | --mending]".into());
         }
     };
     let peers = Peers::build(Wanted::Any)?;
@@ -78,6 +86,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     refined::compare(&peers, &folder, &mut table)?;
     spatial::compare(&peers, &folder, &mut table)?;
     decimated::compare(&peers, &folder, &mut table)?;
+    mending::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

@@ -17,6 +17,9 @@ use crate::{
 pub(crate) struct Check {
     #[command(flatten)]
     input: Input,
+    /// Do not look for faces that pass through each other, which takes longer than all else
+    #[arg(long)]
+    skip_intersections: bool,
 }
 
 impl Check {
@@ -24,7 +27,14 @@ impl Check {
         let mut session = Session::new("check", common);
         let document = session.read(&self.input)?;
         let report = session
-            .run("checking", |progress| defects(&document.set, progress))
+            .run("checking", |progress| {
+                if self.skip_intersections {
+                    return defects(&document.set, progress);
+                }
+                let mut report = defects(&document.set, progress.part(0.0, 0.3))?;
+                report.add_self_intersections(&document.set, progress.part(0.3, 1.0))?;
+                Ok(report)
+            })
             .map_err(|failure| failure.in_file(&self.input.path))?;
         let is_valid = listed(&report).next().is_none();
         session.finish(&to_text(&report), &to_json(&report))?;

@@ -7,6 +7,7 @@ mod filling;
 mod folder;
 mod layouts;
 mod operators;
+mod repairing;
 mod spectra;
 mod subdivision;
 mod subdivision_tables;

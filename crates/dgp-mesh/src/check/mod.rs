@@ -2,7 +2,7 @@
 //!
 //! One invariant a file. The checks build on each other: faces of fewer than three distinct corners are
 //! reported once and take part in nothing else, and a side that more than two faces share belongs to
-//! no fan. Self-intersections are not looked for: they are no matter of connectivity.
+//! no fan. Self-intersections are no matter of connectivity: a report looks for them where asked to.
 //!
 //! - Input: any face set.
 //! - Cost: O(F) time and memory, a little over that where many faces share two vertices.

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::Elements;
+use crate::{Error, FaceList, IndexedFaceSet, Progress, VertexId, spatial::TriangleTree};
 
 /// What can be wrong with a face set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -32,6 +33,9 @@ pub enum DefectKind {
     ZeroAreaFace,
     /// A closed surface turned inside out, unless it lies within another one as the wall of a cavity.
     InwardComponent,
+    /// Faces that pass through each other, or touch in more than what they share. Looked for only by
+    /// [`DefectReport::add_self_intersections`].
+    SelfIntersection,
     /// A vertex at exactly the place of an earlier one. Legal: seams are made so.
     DuplicateVertex,
     /// A vertex of no face. Legal.
@@ -83,6 +87,7 @@ impl DefectKind {
             DefectKind::OppositeFace => "opposite_face",
             DefectKind::ZeroAreaFace => "zero_area_face",
             DefectKind::InwardComponent => "inward_component",
+            DefectKind::SelfIntersection => "self_intersection",
             DefectKind::DuplicateVertex => "duplicate_vertex",
             DefectKind::IsolatedVertex => "isolated_vertex",
             DefectKind::BoundaryLoop => "boundary_loop",
@@ -102,7 +107,8 @@ impl DefectKind {
             DefectKind::DuplicateFace
             | DefectKind::OppositeFace
             | DefectKind::ZeroAreaFace
-            | DefectKind::InwardComponent => Severity::Warning,
+            | DefectKind::InwardComponent
+            | DefectKind::SelfIntersection => Severity::Warning,
             DefectKind::DuplicateVertex | DefectKind::IsolatedVertex | DefectKind::BoundaryLoop => {
                 Severity::Info
             }
@@ -125,10 +131,11 @@ impl DefectKind {
             }
             DefectKind::DuplicateFace => "`dgp repair` keeps the first of each",
             DefectKind::OppositeFace => {
-                "none where a sheet has two sides; `dgp repair` makes manifolds of what they share"
+                "`dgp repair` drops walls within solids, and one side of a sheet that has two"
             }
             DefectKind::ZeroAreaFace => "`dgp repair --drop-degenerate` removes them",
             DefectKind::InwardComponent => "`dgp repair --orient` turns them",
+            DefectKind::SelfIntersection => "`dgp repair` cuts out what meets and fills the holes",
             DefectKind::DuplicateVertex => {
                 "`dgp repair --weld 0` joins them where no seam is meant"
             }
@@ -169,6 +176,8 @@ impl DefectKind {
             DefectKind::ZeroAreaFace => "faces have all corners on a line",
             DefectKind::InwardComponent if one => "closed surface is inside out",
             DefectKind::InwardComponent => "closed surfaces are inside out",
+            DefectKind::SelfIntersection if one => "pair of faces meets beyond what they share",
+            DefectKind::SelfIntersection => "pairs of faces meet beyond what they share",
             DefectKind::DuplicateVertex if one => "vertex is where an earlier one is",
             DefectKind::DuplicateVertex => "vertices are where earlier ones are",
             DefectKind::IsolatedVertex if one => "vertex belongs to no face",
@@ -215,6 +224,45 @@ impl DefectReport {
     /// The defects that are just so bad.
     pub fn of(&self, severity: Severity) -> impl Iterator<Item = &Defect> {
         self.defects.iter().filter(move |defect| defect.severity() == severity)
+    }
+
+    /// Looks for faces of `set` that pass through each other, and adds them if there are any.
+    ///
+    /// Faces with a vertex that is not finite, of fewer than three corners or without area are left
+    /// out. Cost: that of a [`TriangleTree`] and of its
+    /// [`self_intersections`](TriangleTree::self_intersections). Errors: [`Error::Cancelled`].
+    ///
+    /// ```
+    /// use dgp_mesh::{DVec3, DefectKind, FaceList, IndexedFaceSet, Progress, defects};
+    ///
+    /// // The second triangle stands in the first.
+    /// let corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1]];
+    /// let positions = corners.map(|p| DVec3::from_array(p.map(f64::from))).to_vec();
+    /// let set = IndexedFaceSet::new(positions, FaceList::from_indices(&[[0, 1, 2], [3, 4, 5]]))?;
+    /// let mut report = defects(&set, Progress::NONE)?;
+    /// report.add_self_intersections(&set, Progress::NONE)?;
+    /// assert_eq!(report.count(DefectKind::SelfIntersection), 1);
+    /// # Ok::<(), dgp_mesh::Error>(())
+    /// ```
+    pub fn add_self_intersections(
+        &mut self,
+        set: &IndexedFaceSet,
+        progress: Progress<'_>,
+    ) -> Result<(), Error> {
+        let is_finite = |face: &[VertexId]| face.iter().all(|&v| set.position(v).is_finite());
+        let mut sources = Vec::with_capacity(set.face_count());
+        let mut finite = FaceList::new();
+        for (f, face) in set.faces().iter().filter(|(_, face)| is_finite(face)) {
+            finite.push(face);
+            sources.push(f);
+        }
+        let finite = IndexedFaceSet::from_valid(set.positions().clone(), finite);
+        let tree = TriangleTree::new(&finite, progress.part(0.0, 0.5))?;
+        let pairs = tree.self_intersections(progress.part(0.5, 1.0))?;
+        let pairs = pairs.into_iter().map(|pair| pair.map(|f| sources[f.index()])).collect();
+        self.add(DefectKind::SelfIntersection, Elements::FacePairs(pairs));
+        self.sort();
+        Ok(())
     }
 
     pub(super) fn add(&mut self, kind: DefectKind, elements: Elements) {

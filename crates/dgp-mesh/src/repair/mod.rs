@@ -5,7 +5,7 @@
 //! 1. weld vertices, where asked to;
 //! 2. drop vertices with coordinates that are no finite numbers, and their faces;
 //! 3. shorten faces that name a vertex twice, drop those of fewer than three corners;
-//! 4. drop all but the first of equal faces;
+//! 4. drop all but the first of equal faces, and those that lie back to back, where asked to;
 //! 5. turn faces over so that neighbors agree, and cut where they cannot;
 //! 6. where more than two faces meet at an edge, decide which two belong together;
 //! 7. give each fan of faces at a vertex a vertex of its own;
@@ -31,6 +31,7 @@ mod flat;
 mod holes;
 mod report;
 mod separate;
+mod sheets;
 mod triangulate;
 
 pub use report::{Change, RepairAction, RepairReport};
@@ -57,6 +58,8 @@ pub struct RepairOptions {
     pub one_sided: OneSided,
     /// What becomes of edges that more than two faces share.
     pub crowded_edges: CrowdedEdges,
+    /// What becomes of faces that are the backs of others.
+    pub opposite_faces: OppositeFaces,
     /// Which connected components stay.
     pub components: KeepComponents,
     /// Holes of up to this many edges are filled; none if it is zero. What has a rim by nature, such
@@ -112,6 +115,17 @@ pub enum CrowdedEdges {
     Cut,
 }
 
+/// What becomes of faces with the vertices of another in reverse order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum OppositeFaces {
+    /// They stay.
+    #[default]
+    Keep,
+    /// A patch of such pairs that other faces pass by, a wall between two solids or a fin, goes. One that
+    /// others continue, or that stands alone, keeps one of its sides.
+    Remove,
+}
+
 /// Which connected components stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum KeepComponents {
@@ -142,6 +156,7 @@ impl Default for RepairOptions {
             orientation: Facing::Outward,
             one_sided: OneSided::Cut,
             crowded_edges: CrowdedEdges::Pair,
+            opposite_faces: OppositeFaces::Keep,
             components: KeepComponents::All,
             hole_edges: 0,
             isolated_vertices: IsolatedVertices::Drop,
@@ -194,8 +209,8 @@ pub fn repair_faces<'a>(
     let adjacency = draft.adjacency();
     // Equal faces share sides in a way that is no manifold's, so there is nothing to seek in one.
     let suspicious = !adjacency.misoriented.is_empty() || adjacency.crowded_edges().len() > 0;
-    if suspicious {
-        drop_duplicates(&mut draft);
+    if suspicious || options.opposite_faces == OppositeFaces::Remove {
+        drop_duplicates(&mut draft, options.opposite_faces);
     }
     progress.report(0.5)?;
     if suspicious {
@@ -240,8 +255,21 @@ fn welded<'a>(
     Ok((Cow::Owned(base), Some(report.welding)))
 }
 
-fn drop_duplicates(draft: &mut Draft) {
-    let pairs = duplicates(draft.positions.len(), &draft.faces).same;
+fn drop_duplicates(draft: &mut Draft, opposite_faces: OppositeFaces) {
+    let found = duplicates(draft.positions.len(), &draft.faces);
+    let (pairs, opposite) = (found.same, found.opposite);
+    if opposite_faces == OppositeFaces::Remove && !opposite.is_empty() {
+        // Both at once, as ids change when faces go.
+        let backs = sheets::to_drop(draft, &pairs, &opposite);
+        draft.record(RepairAction::DropOppositeFaces, draft.input_faces(&backs));
+        let mut dropped: Vec<FaceId> = pairs.iter().map(|pair| pair[0]).chain(backs).collect();
+        dropped.sort_unstable();
+        dropped.dedup();
+        let pairs = pairs.iter().map(|pair| pair.map(|f| draft.input_face(f))).collect();
+        draft.record(RepairAction::DropDuplicateFaces, Elements::FacePairs(pairs));
+        draft.drop_faces(&dropped);
+        return;
+    }
     let dropped: Vec<FaceId> = pairs.iter().map(|pair| pair[0]).collect();
     let pairs = pairs.iter().map(|pair| pair.map(|f| draft.input_face(f))).collect();
     draft.record(RepairAction::DropDuplicateFaces, Elements::FacePairs(pairs));

@@ -20,6 +20,8 @@ pub enum RepairAction {
     DropShortFaces,
     /// Faces that repeat another one were dropped: face pairs.
     DropDuplicateFaces,
+    /// Faces that lie back to back were dropped: both of a wall, one of a sheet: faces.
+    DropOppositeFaces,
     /// Faces were turned over: faces.
     TurnFaces,
     /// The surface was cut where it has only one side, or where faces disagree and were to stay so:
@@ -56,7 +58,7 @@ pub struct Change {
 
 /// What [`repair`](crate::repair()) changed.
 #[must_use]
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RepairReport {
     /// The changes in the order of the steps; none if the input was fine.
     pub changes: Vec<Change>,
@@ -91,7 +93,7 @@ impl RepairAction {
             RepairAction::ShortenFaces
             | RepairAction::CopyCorners
             | RepairAction::DropShortFaces => "degenerate_faces",
-            RepairAction::DropDuplicateFaces => "duplicate_faces",
+            RepairAction::DropDuplicateFaces | RepairAction::DropOppositeFaces => "duplicate_faces",
             RepairAction::TurnFaces | RepairAction::CutEdges | RepairAction::TurnComponents => {
                 "orient"
             }
@@ -113,6 +115,7 @@ impl RepairAction {
             RepairAction::CopyCorners => "copy_corners",
             RepairAction::DropShortFaces => "drop_short_faces",
             RepairAction::DropDuplicateFaces => "drop_duplicate_faces",
+            RepairAction::DropOppositeFaces => "drop_opposite_faces",
             RepairAction::TurnFaces => "turn_faces",
             RepairAction::CutEdges => "cut_edges",
             RepairAction::SeparateEdges => "separate_edges",

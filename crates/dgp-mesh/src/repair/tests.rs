@@ -360,3 +360,43 @@ proptest! {
         prop_assert_eq!(small_mesh.connectivity(), mesh.connectivity());
     }
 }
+
+#[test]
+fn walls_and_fins_go_and_sheets_keep_a_side() {
+    let options =
+        RepairOptions { opposite_faces: OppositeFaces::Remove, ..RepairOptions::default() };
+    let dropped = |report: &RepairReport| ids(report.get(RepairAction::DropOppositeFaces));
+    // Two tetrahedra with a wall between them, which both have: 3 of one and 2 of the other.
+    let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, 0.3, 1.0], [0.3, 0.3, -1.0]];
+    let positions = positions.map(DVec3::from).to_vec();
+    let upper = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let lower = [[0, 1, 2], [1, 0, 4], [2, 1, 4], [0, 2, 4]];
+    let faces = FaceList::from_indices(&[upper, lower].concat());
+    let (mesh, report) = mend(&IndexedFaceSet::new(positions.clone(), faces).unwrap(), options);
+    assert_eq!((mesh.face_count(), mesh.vertex_count(), dropped(&report)), (6, 5, vec![0, 4]));
+    assert!(mesh.halfedges().all(|h| mesh.face(h).is_some()));
+    // A fin with two sides on a tetrahedron.
+    let fin = [upper.as_slice(), &[[0, 1, 4], [1, 0, 4]]].concat();
+    let fin = IndexedFaceSet::new(positions, FaceList::from_indices(&fin)).unwrap();
+    let (mesh, report) = mend(&fin, options);
+    assert_eq!((mesh.face_count(), dropped(&report)), (4, vec![4, 5]));
+    // A tetrahedron with a side too many.
+    let more = [upper.as_slice(), &[[3, 1, 0]]].concat();
+    let more = IndexedFaceSet::new(fin.positions().clone(), FaceList::from_indices(&more)).unwrap();
+    let (mesh, report) = mend(&more, options);
+    assert_eq!((mesh.face_count(), dropped(&report)), (4, vec![4]));
+    assert!(mesh.halfedges().all(|h| mesh.face(h).is_some()));
+    // A sheet of both sides of a grid, and each face a second time.
+    let grid = shapes::grid(3, 3).unwrap().to_indexed();
+    let mut faces = grid.faces().clone();
+    for (_, face) in grid.faces().iter() {
+        faces.push(&face.iter().rev().copied().collect::<Vec<_>>());
+        faces.push(face);
+    }
+    let sheet = IndexedFaceSet::new(grid.positions().clone(), faces).unwrap();
+    let (mesh, report) = mend(&sheet, options);
+    assert_eq!((mesh.face_count(), dropped(&report).len()), (grid.face_count(), grid.face_count()));
+    assert_eq!(report.count(RepairAction::DropDuplicateFaces), grid.face_count());
+    let (_, again) = mend(&mesh.to_indexed(), options);
+    assert_eq!(again.changes, []);
+}

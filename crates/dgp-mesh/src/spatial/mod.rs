@@ -8,7 +8,7 @@
 //! | what is near | [`TriangleTree::faces_within`], [`TriangleTree::faces_in_box`] |
 //! | what does a [`Ray`] or a segment meet | [`TriangleTree::first_hit`], [`TriangleTree::all_hits`], [`TriangleTree::is_hit`] |
 //! | which faces pass through each other | [`TriangleTree::self_intersections`] |
-//! | what is inside | [`WindingNumbers`], [`SignedDistances`] |
+//! | what is inside | [`WindingNumbers`], [`SignedDistances`]; of points with normals [`CloudWinding`] |
 //! | how far are two surfaces apart | [`hausdorff`](hausdorff()) with sure bounds, [`deviation`](deviation()) for means |
 //! | the same for points | [`PointTree`], [`chamfer`] |
 //!
@@ -18,6 +18,7 @@
 mod batch;
 mod build;
 mod closest_point;
+mod cloud_winding;
 mod curve;
 mod deviation;
 mod frame;
@@ -32,6 +33,7 @@ mod triangle_tree;
 mod winding_number;
 
 pub use closest_point::ClosestPoint;
+pub use cloud_winding::{AREA_NEIGHBORS, CloudWinding, cloud_areas};
 pub use deviation::{Deviation, DeviationOptions, deviation};
 pub use hausdorff::{
     HausdorffBounds, HausdorffOptions, HausdorffReport, hausdorff, one_sided_hausdorff,

@@ -28,10 +28,10 @@ use crate::{
 /// Points ordered so that those near a place are found fast. Points are known by their number.
 #[derive(Clone, Debug)]
 pub struct PointTree {
-    nodes: Nodes,
+    pub(super) nodes: Nodes,
     /// Scaled, in order of the leaves; so are the numbers.
-    points: Vec<DVec3>,
-    numbers: Vec<u32>,
+    pub(super) points: Vec<DVec3>,
+    pub(super) numbers: Vec<u32>,
 }
 
 /// A point found by a [`PointTree`].

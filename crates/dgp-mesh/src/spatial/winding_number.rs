@@ -16,11 +16,14 @@
 //!   clouds", ACM Transactions on Graphics 37(4), 2018; van Oosterom and Strackee, "The solid angle of a
 //!   plane triangle", IEEE Transactions on Biomedical Engineering 30(2), 1983.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, ops::Range};
 
 use glam::DVec3;
 
-use super::{TriangleTree, batch, nodes::WIDTH};
+use super::{
+    TriangleTree, batch,
+    nodes::{Node, WIDTH},
+};
 use crate::{Error, Progress, parallel};
 
 /// Choices of [`WindingNumbers`].
@@ -50,7 +53,7 @@ pub struct WindingNumbers<'a> {
 
 /// What a node looks like from afar. All in the frame, r = center − q.
 #[derive(Clone, Copy, Debug)]
-struct Moments {
+pub(super) struct Moments {
     center: DVec3,
     /// The square of β times the radius.
     reach: f64,
@@ -87,7 +90,8 @@ impl<'a> WindingNumbers<'a> {
         if !(accuracy >= 1.0) {
             return Err(Error::option("accuracy", accuracy, "at least 1"));
         }
-        let moments = gathered(tree).iter().map(|sum| sum.moments(accuracy)).collect();
+        let sums = gathered(&tree.nodes.nodes, |i| Sums::of_triangle(&tree.triangles[i]));
+        let moments = sums.iter().map(|sum| sum.moments(accuracy)).collect();
         Ok(WindingNumbers { tree, moments, accuracy })
     }
 
@@ -102,30 +106,10 @@ impl<'a> WindingNumbers<'a> {
         if self.moments.is_empty() || !q.is_finite() {
             return 0.0;
         }
-        let mut angle = 0.0;
-        let mut stack = vec![0_u32];
-        while let Some(index) = stack.pop() {
-            let moments = &self.moments[index as usize];
-            let r = moments.center - q;
-            let square = r.length_squared();
-            if square > moments.reach {
-                angle += moments.flux(r, square);
-                continue;
-            }
-            let node = &self.tree.nodes.nodes[index as usize];
-            for i in (0..WIDTH).filter(|&i| node.has(i)) {
-                match node.leaf(i) {
-                    Some(items) => {
-                        angle += self.tree.triangles[items]
-                            .iter()
-                            .map(|t| solid_angle(q, t))
-                            .sum::<f64>();
-                    }
-                    None => stack.push(node.first[i]),
-                }
-            }
-        }
-        angle / (4.0 * PI)
+        let of_leaf = |items: Range<usize>| {
+            self.tree.triangles[items].iter().map(|t| solid_angle(q, t)).sum::<f64>()
+        };
+        walk(&self.tree.nodes.nodes, &self.moments, q, of_leaf) / (4.0 * PI)
     }
 
     /// The winding number at each of `points`.
@@ -139,6 +123,34 @@ impl<'a> WindingNumbers<'a> {
             self.at(points[i])
         })
     }
+}
+
+/// The solid angle of all that is seen from `q`: nodes from afar, leaves by what `of_leaf` says.
+pub(super) fn walk(
+    nodes: &[Node],
+    moments: &[Moments],
+    q: DVec3,
+    of_leaf: impl Fn(Range<usize>) -> f64,
+) -> f64 {
+    let mut angle = 0.0;
+    let mut stack = vec![0_u32];
+    while let Some(index) = stack.pop() {
+        let seen = &moments[index as usize];
+        let r = seen.center - q;
+        let square = r.length_squared();
+        if square > seen.reach {
+            angle += seen.flux(r, square);
+            continue;
+        }
+        let node = &nodes[index as usize];
+        for i in (0..WIDTH).filter(|&i| node.has(i)) {
+            match node.leaf(i) {
+                Some(items) => angle += of_leaf(items),
+                None => stack.push(node.first[i]),
+            }
+        }
+    }
+    angle
 }
 
 /// The signed solid angle of a triangle seen from `q`; 0 in its plane.
@@ -156,7 +168,7 @@ fn solid_angle(q: DVec3, triangle: &[DVec3; 3]) -> f64 {
 
 /// The sums of a node, which parents are made of.
 #[derive(Clone, Copy)]
-struct Sums {
+pub(super) struct Sums {
     center: DVec3,
     radius: f64,
     /// Σ |A|, and Σ A.
@@ -177,6 +189,11 @@ impl Sums {
         first: [[0.0; 3]; 3],
         second: [[[0.0; 3]; 3]; 3],
     };
+
+    /// Those of a point with a vector area.
+    pub(super) fn of_point(point: DVec3, area: DVec3) -> Sums {
+        Sums { center: point, size: area.length(), area, ..Sums::ZERO }
+    }
 
     /// Those of one triangle around its center.
     fn of_triangle(&[a, b, c]: &[DVec3; 3]) -> Sums {
@@ -222,7 +239,7 @@ impl Sums {
         sums
     }
 
-    fn moments(&self, accuracy: f64) -> Moments {
+    pub(super) fn moments(&self, accuracy: f64) -> Moments {
         let (m, t) = (&self.first, &self.second);
         let second = DVec3::from_array(
             [0, 1, 2].map(|i| (0..3).map(|k| 0.5 * (t[i][k][k] + 2.0 * t[k][k][i])).sum::<f64>()),
@@ -260,14 +277,13 @@ impl Sums {
     }
 }
 
-/// The sums of each node, children before parents.
-fn gathered(tree: &TriangleTree) -> Vec<Sums> {
-    let nodes = &tree.nodes.nodes;
+/// The sums of each node, children before parents, from those of each item of a leaf.
+pub(super) fn gathered(nodes: &[Node], of_item: impl Fn(usize) -> Sums + Sync) -> Vec<Sums> {
     // The leaves of each node, in parallel.
     let blocks = parallel::map_blocks(nodes.len(), parallel::BLOCK, |range| {
         let of_node = |index: usize| {
             let items = (0..WIDTH).filter_map(|i| nodes[index].leaf(i)).flatten();
-            let parts: Vec<Sums> = items.map(|i| Sums::of_triangle(&tree.triangles[i])).collect();
+            let parts: Vec<Sums> = items.map(&of_item).collect();
             if parts.is_empty() { Sums::ZERO } else { Sums::of_parts(&parts) }
         };
         range.map(of_node).collect::<Vec<Sums>>()

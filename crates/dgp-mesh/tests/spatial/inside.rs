@@ -3,7 +3,9 @@
 use dgp_mesh::{
     DVec3, Error, FaceList, IndexedFaceSet, Progress,
     shapes::{self, Random},
-    spatial::{SignedDistances, WindingNumbers, WindingOptions},
+    spatial::{
+        AREA_NEIGHBORS, CloudWinding, SignedDistances, WindingNumbers, WindingOptions, cloud_areas,
+    },
 };
 
 use super::{random_point, soup, tree};
@@ -113,4 +115,77 @@ fn nothing_winds_around_nothing() {
     let error = fast.at_points(&[DVec3::NAN], Progress::NONE);
     assert_eq!(error, Err(Error::NonFinitePoint { index: 0 }));
     assert!(SignedDistances::new(&empty).at(DVec3::ZERO).is_none());
+}
+
+/// Points of a sphere and of a torus with the normals of their formulas, and the surface itself.
+fn clouds() -> Vec<(Vec<DVec3>, Vec<DVec3>, dgp_mesh::Mesh)> {
+    let mut random = Random::new(3);
+    let sphere: Vec<DVec3> = (0..4000).map(|_| random.direction()).collect();
+    let torus = shapes::torus(2.0, 0.7, 120, 60).unwrap();
+    let normal = |p: &DVec3| {
+        let ring = 2.0 * DVec3::new(p.x, p.y, 0.0).normalize();
+        (*p - ring).normalize()
+    };
+    let points = torus.positions().values().to_vec();
+    let normals = points.iter().map(normal).collect();
+    vec![(sphere.clone(), sphere, shapes::icosphere(5).unwrap()), (points, normals, torus)]
+}
+
+#[test]
+fn clouds_wind_as_the_surfaces_they_were_taken_from() {
+    for (points, normals, surface) in clouds() {
+        let areas = cloud_areas(&points, AREA_NEIGHBORS, Progress::NONE).unwrap();
+        let total: f64 = areas.iter().sum();
+        let right = dgp_mesh::measure::area(&surface);
+        assert!((total / right - 1.0).abs() < 0.15, "{total} of {right}");
+        let vectors: Vec<DVec3> = normals.iter().zip(&areas).map(|(n, a)| *a * *n).collect();
+        let fast = CloudWinding::new(&points, &vectors, WindingOptions::default(), Progress::NONE)
+            .unwrap();
+        let options = WindingOptions { accuracy: 1e9 };
+        let exact = CloudWinding::new(&points, &vectors, options, Progress::NONE).unwrap();
+        let tree = tree(&surface);
+        let signed = SignedDistances::new(&tree);
+        let mut random = Random::new(7);
+        let places: Vec<DVec3> = (0..500).map(|_| 2.9 * random_point(&mut random)).collect();
+        let many = fast.at_points(&places, Progress::NONE).unwrap();
+        let mut inside = 0;
+        for (&p, &winding) in places.iter().zip(&many) {
+            assert_eq!(winding.to_bits(), fast.at(p).to_bits());
+            let distance = signed.at(p).unwrap().distance;
+            // By summing over all points as the formula says.
+            let sum: f64 = points
+                .iter()
+                .zip(&vectors)
+                .map(|(&x, a)| {
+                    let r = x - p;
+                    a.dot(r) / r.length().powi(3)
+                })
+                .sum::<f64>()
+                / (4.0 * std::f64::consts::PI);
+            assert!((exact.at(p) - sum).abs() < 1e-9, "{p}");
+            assert!((winding - sum).abs() < 0.02, "{p}: {winding}, not {sum}");
+            if distance.abs() > 0.15 {
+                assert_eq!(winding > 0.5, distance < 0.0, "{p}: {winding} at {distance}");
+                inside += usize::from(distance < 0.0);
+            }
+        }
+        assert!(inside > 5);
+        // A power of two scales places and areas, not the number.
+        let scale = 2.0_f64.powi(90);
+        let large: Vec<DVec3> = points.iter().map(|&p| scale * p).collect();
+        let wide: Vec<DVec3> = vectors.iter().map(|&a| scale * scale * a).collect();
+        let scaled =
+            CloudWinding::new(&large, &wide, WindingOptions::default(), Progress::NONE).unwrap();
+        assert!(
+            places.iter().zip(&many).all(|(&p, w)| scaled.at(scale * p).to_bits() == w.to_bits())
+        );
+    }
+    let options = WindingOptions::default();
+    let refused = |areas: &[DVec3]| {
+        CloudWinding::new(&[DVec3::X], areas, options, Progress::NONE).err().unwrap()
+    };
+    assert!(matches!(refused(&[]), Error::InvalidOption { .. }));
+    assert!(matches!(refused(&[DVec3::NAN]), Error::NonFinitePoint { index: 0 }));
+    let nothing = CloudWinding::new(&[], &[], options, Progress::NONE).unwrap();
+    assert_eq!(nothing.at(DVec3::X), 0.0);
 }

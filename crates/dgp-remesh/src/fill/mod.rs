@@ -161,16 +161,7 @@ pub fn fill_holes(
     let mut report = FillReport::default();
     let mut editor = Editor::new(mesh);
     for (k, rim) in rims.iter().enumerate() {
-        let mut hole = Hole {
-            halfedge: rim[0],
-            edges: rim.len(),
-            length: lengths[k],
-            outcome: HoleOutcome::Filled,
-            largest_bend: 0.0,
-            area: 0.0,
-            faces: 0,
-            vertices: 0,
-        };
+        let mut hole = new_hole(rim, lengths[k]);
         let next = done + rim.len().pow(2);
         let part = progress.part(done as f64 / total as f64, next as f64 / total as f64);
         done = next;
@@ -188,8 +179,22 @@ pub fn fill_holes(
     Ok(report)
 }
 
+/// A hole of which nothing is known but its rim.
+pub(crate) fn new_hole(rim: &[HalfedgeId], length: f64) -> Hole {
+    Hole {
+        halfedge: rim[0],
+        edges: rim.len(),
+        length,
+        outcome: HoleOutcome::Filled,
+        largest_bend: 0.0,
+        area: 0.0,
+        faces: 0,
+        vertices: 0,
+    }
+}
+
 /// Fills one hole.
-fn fill(
+pub(crate) fn fill(
     editor: &mut Editor<'_>,
     rim: &[HalfedgeId],
     options: &FillOptions,

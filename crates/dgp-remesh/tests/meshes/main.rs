@@ -6,3 +6,4 @@ mod holes;
 mod progressive;
 mod quadrics;
 mod quick;
+mod repairing;

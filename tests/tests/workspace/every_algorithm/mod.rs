@@ -6,6 +6,7 @@ mod inputs;
 mod laplacians;
 mod layouts;
 mod outcome;
+mod repairs;
 mod spatial;
 mod subdivisions;
 mod table;

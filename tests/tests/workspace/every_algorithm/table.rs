@@ -20,7 +20,7 @@ use dgp_view::{Field, Model, Paint, RenderOptions, Scalars, Scene, Shape, Stroke
 
 use super::{
     decimations::decimations, inputs::Input, laplacians::laplacians, layouts::layouts,
-    outcome::Outcome, spatial::spatial, subdivisions::subdivisions,
+    outcome::Outcome, repairs::repairs, spatial::spatial, subdivisions::subdivisions,
 };
 
 /// A name and what to run.
@@ -60,6 +60,7 @@ pub(crate) fn algorithms() -> Vec<Algorithm> {
         subdivisions(),
         decimations(),
         layouts(),
+        repairs(),
         pictures_and_files(),
     ]
     .into_iter()
