@@ -6,6 +6,8 @@
 //! | any cost, any constraint, any data | [`decimate`](decimate()), [`CollapseCost`], [`LengthCost`], [`CurvatureCost`], [`QuadricCost`] |
 //! | all levels of detail of a mesh, exactly | [`ProgressiveMesh`], [`ProgressiveStream`], [`Geomorph`] |
 //! | holes closed, smoothly | [`fill_holes`], [`FillOptions`] |
+//! | points on a surface, at random or evenly | [`sample_uniform`], [`sample_stratified`], [`sample_poisson_disk`], [`sample_blue_noise`] |
+//! | a new triangulation of evenly spread vertices | [`voronoi_remesh`], [`VoronoiOptions`] |
 //! | quadric error metrics | [`Quadric`] |
 //!
 //! ```
@@ -26,6 +28,8 @@ mod error;
 mod fill;
 mod progressive;
 mod quadric;
+mod sample;
+mod voronoi;
 
 pub use decimate::{
     Boundary, CollapseCost, CurvatureCost, DecimationOptions, DecimationReport, LengthCost, Memory,
@@ -36,3 +40,9 @@ pub use error::Error;
 pub use fill::{FillOptions, FillReport, Hole, HoleOutcome, LongestRim, Patch, fill_holes};
 pub use progressive::{Geomorph, ProgressiveMesh, ProgressiveStream};
 pub use quadric::Quadric;
+pub use sample::{
+    BlueNoiseOptions, BlueNoiseReport, MAX_SAMPLES, PoissonOptions, PoissonReport, SampleNormal,
+    SurfaceSample, sample_attributes, sample_blue_noise, sample_normals, sample_poisson_disk,
+    sample_stratified, sample_uniform,
+};
+pub use voronoi::{VoronoiOptions, VoronoiPlacement, VoronoiReport, voronoi_remesh};

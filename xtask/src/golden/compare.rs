@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 49] = [
+pub(crate) const QUANTITIES: [(&str, &str); 51] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -66,6 +66,8 @@ pub(crate) const QUANTITIES: [(&str, &str); 49] = [
     ("box_faces", "equal"),
     ("self_intersections", "equal"),
     ("hausdorff", "intervals overlap"),
+    ("hole_weight", "not larger by 1e-6 rad, or as bent and larger by 1e-9"),
+    ("patch_energy", "not larger than 1.05 of theirs"),
 ];
 
 /// How one quantity of one input compares.

@@ -7,6 +7,7 @@ mod charts;
 mod compare;
 mod estimates;
 mod facts;
+pub(crate) mod holes;
 mod inputs;
 mod refined;
 mod spatial;
@@ -45,8 +46,15 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             table.print();
             return table.verdict();
         }
+        [option] if option == "--holes" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            holes::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--regenerate" => true,
-        _ => return Err("usage: golden [--regenerate | --refined | --spatial]".into()),
+        _ => return Err("usage: golden [--regenerate | --refined | --spatial | --holes]".into()),
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;
@@ -67,6 +75,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     estimates::compare(&peers, &folder, &mut table)?;
     refined::compare(&peers, &folder, &mut table)?;
     spatial::compare(&peers, &folder, &mut table)?;
+    holes::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

@@ -24,6 +24,7 @@ mod partition;
 mod progressive;
 mod render;
 mod repair;
+mod sample;
 mod scalars;
 mod shape;
 mod smooth;
@@ -31,6 +32,7 @@ mod solve;
 mod spectrum;
 mod stencils;
 mod subdivide;
+mod voronoi;
 
 use std::path::Path;
 
@@ -63,6 +65,10 @@ pub(crate) enum Command {
     Fill(fill::Fill),
     /// Keep all levels of detail of a mesh in one file, or take one out
     Progressive(progressive::Progressive),
+    /// Spread vertices evenly over a surface: centroidal Voronoi remeshing
+    Voronoi(voronoi::Voronoi),
+    /// Points on a surface, at random, in strata, or at a distance from each other
+    Sample(sample::Sample),
     /// Flip, split, collapse, add and remove single elements
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two

@@ -6,6 +6,7 @@ mod elements;
 mod filling;
 mod folder;
 mod operators;
+mod sampling;
 mod spectra;
 mod subdivision;
 mod subdivision_tables;

@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 28] = [
+const COMMANDS: [&str; 30] = [
     "info",
     "check",
     "convert",
@@ -14,6 +14,8 @@ const COMMANDS: [&str; 28] = [
     "decimate",
     "progressive",
     "fill",
+    "voronoi",
+    "sample",
     "edit",
     "geodesic",
     "curvature",

@@ -8,22 +8,23 @@
 //! The smaller of two weights has the smaller α, or with equal α the smaller A. Neighbors are the triangles that were chosen at the sides a b and b c, and on the rim the faces outside.
 //!
 //! - Input: the points of the rim, in order.
-//! - Cost: O(n³) time, O(n²) memory for n ≤ 1000; beyond, rims are divided: see [`Rim::triangulate`].
-//! - Guarantees: the minimum of the recurrence, which need not be that over all triangulations: the bend at
-//!   a c depends on what is chosen on its other side; same bits for any number of threads.
+//! - Cost: O(n³) time, O(n²) memory for up to [`WHOLE`] corners; longer rims: see `sparse.rs`.
+//! - Guarantees: up to there the minimum of the recurrence, which need not be that over all triangulations: the
+//!   bend at a c depends on what is chosen on its other side; same bits for any number of threads.
 //! - Reference: Barequet and Sharir, "Filling gaps in the boundary of a polyhedron", Computer Aided
 //!   Geometric Design 12, 1995; Liepa, "Filling holes in meshes", Symposium on Geometry Processing, 2003.
 //! - Departs from it: triangles without area count as folded; candidates that cannot be better are left out before their triangle is looked at.
 
 use dgp_mesh::{DVec3, Progress, parallel};
 
+use super::sparse;
 use crate::Error;
 
-/// Rims of more sides are divided.
-const WHOLE: usize = 1000;
+/// For rims of more corners only some lines between corners are looked at.
+pub(super) const WHOLE: usize = 200;
 
-/// Into how many parts, about.
-const PARTS: usize = 400;
+/// Where some lines are not enough all are tried, up to so many corners.
+const PATIENCE: usize = 1500;
 
 /// Levels with fewer candidates are not shared among threads.
 const SHARED: usize = 20_000;
@@ -50,113 +51,94 @@ pub(super) struct Triangulation {
 const FOLDED: f64 = 2.0;
 
 /// Triangles of corners of the rim, and what is known of all of them.
-type Chosen = (Vec<[u32; 3]>, Cell);
+pub(super) type Chosen = (Vec<[u32; 3]>, Cell);
 
 /// What is known of the part of the rim from one corner to another.
 #[derive(Clone, Copy)]
-struct Cell {
+pub(super) struct Cell {
     /// The largest 1 − cos of the angle between neighbors; infinite where the corners cannot be joined.
-    bend: f64,
-    area: f64,
+    pub(super) bend: f64,
+    pub(super) area: f64,
     /// Of the triangle at the line between the corners.
-    normal: DVec3,
+    pub(super) normal: DVec3,
     /// Its third corner.
-    apex: u32,
+    pub(super) apex: u32,
 }
 
 impl Cell {
-    const IMPOSSIBLE: Cell =
+    pub(super) const IMPOSSIBLE: Cell =
         Cell { bend: f64::INFINITY, area: f64::INFINITY, normal: DVec3::ZERO, apex: u32::MAX };
 
-    fn side(normal: DVec3) -> Cell {
+    pub(super) fn side(normal: DVec3) -> Cell {
         Cell { bend: 0.0, area: 0.0, normal, apex: u32::MAX }
     }
 
-    fn is_better_than(&self, other: &Cell) -> bool {
+    pub(super) fn is_better_than(&self, other: &Cell) -> bool {
         self.bend < other.bend || (self.bend == other.bend && self.area < other.area)
+    }
+
+    /// Takes the triangle of `points` at b, if it is better, given what is known of both sides at its apex.
+    #[inline]
+    pub(super) fn offer(
+        &mut self,
+        [a, b, c]: [DVec3; 3],
+        [first, second]: [&Cell; 2],
+        apex: u32,
+        beyond: DVec3,
+    ) {
+        let below = first.bend.max(second.bend);
+        if below > self.bend || !below.is_finite() {
+            return;
+        }
+        let cross = (b - a).cross(c - b);
+        let length = cross.length();
+        // What lies beyond a triangle without area could look anywhere: it counts as folded.
+        let (normal, bend) = if length > 0.0 {
+            let normal = cross / length;
+            let sides = bend(normal, first.normal).max(bend(normal, second.normal));
+            (normal, below.max(sides).max(bend(normal, beyond)))
+        } else {
+            (DVec3::ZERO, FOLDED)
+        };
+        let area = first.area + second.area + 0.5 * length;
+        let cell = Cell { bend, area, normal, apex };
+        if cell.is_better_than(self) {
+            *self = cell;
+        }
     }
 }
 
 impl Rim<'_> {
-    /// The best triangulation; `None` where edges that are there already leave none.
-    ///
-    /// Of a long rim the best triangulations of short parts are found first, and then the best of what
-    /// is left.
+    /// The best triangulation, or nearly; `None` where edges that are there already leave none.
     pub(super) fn triangulate(
         &self,
         progress: Progress<'_>,
     ) -> Result<Option<Triangulation>, Error> {
         let n = self.points.len();
-        if n <= WHOLE {
-            let all: Vec<u32> = (0..n as u32).collect();
-            let normals = self.normals.to_vec();
-            return Ok(self.best(&all, &normals, progress)?.map(|(triangles, cell)| {
-                Triangulation { triangles, angle: angle(cell.bend), area: cell.area }
-            }));
-        }
-        let Some((corners, ends)) = self.parts(n.div_ceil(PARTS)) else { return Ok(None) };
-        let mut triangles = Vec::with_capacity(n - 2);
-        let (mut bend, mut area) = (0.0_f64, 0.0);
-        let mut normals = Vec::with_capacity(corners.len());
-        for (k, (&start, &end)) in corners.iter().zip(&ends).enumerate() {
-            progress.part(0.0, 0.5).report(k as f64 / corners.len() as f64)?;
-            let part: Vec<u32> = (start..=end).map(|i| i % n as u32).collect();
-            let mut outside: Vec<DVec3> =
-                part[..part.len() - 1].iter().map(|&i| self.normals[i as usize]).collect();
-            if part.len() == 2 {
-                normals.push(outside[0]);
-                continue;
+        let whole = |progress| self.best(progress);
+        let chosen = if n <= WHOLE {
+            whole(progress)?
+        } else {
+            match sparse::best(self, progress.part(0.0, 0.9))? {
+                None if n <= PATIENCE => whole(progress.part(0.9, 1.0))?,
+                found => found,
             }
-            outside.push(DVec3::ZERO);
-            let Some((found, cell)) = self.best(&part, &outside, Progress::NONE)? else {
-                return Ok(None);
-            };
-            triangles.extend(found);
-            bend = bend.max(cell.bend);
-            area += cell.area;
-            normals.push(cell.normal);
-        }
-        let best = self.best(&corners, &normals, progress.part(0.5, 1.0))?;
-        Ok(best.map(|(found, cell)| {
-            triangles.extend(found);
-            Triangulation { triangles, angle: angle(bend.max(cell.bend)), area: area + cell.area }
+        };
+        Ok(chosen.map(|(triangles, cell)| Triangulation {
+            triangles,
+            angle: angle(cell.bend),
+            area: cell.area,
         }))
     }
 
-    /// Corners about `step` apart that can be joined, from 0 on, and for each the end of its part.
-    fn parts(&self, step: usize) -> Option<(Vec<u32>, Vec<u32>)> {
-        let n = self.points.len() as u32;
-        let mut corners = vec![0_u32];
-        loop {
-            let start = corners[corners.len() - 1];
-            let free = |end: &u32| !self.are_joined(start, *end);
-            match (start + step as u32..n - 1).find(free) {
-                Some(end) => corners.push(end),
-                None => break,
-            }
-        }
-        // The last part ends where the first starts.
-        while self.are_joined(corners[corners.len() - 1], 0) {
-            corners.pop();
-        }
-        let ends = corners.iter().skip(1).copied().chain([n]).collect();
-        (corners.len() > 2).then_some((corners, ends))
-    }
-
-    fn are_joined(&self, a: u32, b: u32) -> bool {
+    pub(super) fn are_joined(&self, a: u32, b: u32) -> bool {
         self.joined[a as usize].binary_search(&b).is_ok()
     }
 
-    /// The best triangulation of some corners in order, with a normal beyond each side, the last that of
-    /// the side which closes; `None` where there is none.
-    fn best(
-        &self,
-        corners: &[u32],
-        normals: &[DVec3],
-        progress: Progress<'_>,
-    ) -> Result<Option<Chosen>, Error> {
-        let n = corners.len();
-        let points: Vec<DVec3> = corners.iter().map(|&i| self.points[i as usize]).collect();
+    /// The best triangulation of all; `None` where there is none.
+    pub(super) fn best(&self, progress: Progress<'_>) -> Result<Option<Chosen>, Error> {
+        let Rim { points, normals, .. } = *self;
+        let n = points.len();
         // What is known of a and c, by a and by c: both are read one after the other.
         let mut rows = vec![Cell::IMPOSSIBLE; n * n];
         let mut columns = vec![Cell::IMPOSSIBLE; n * n];
@@ -172,12 +154,12 @@ impl Rim<'_> {
                 let found = range.map(|a| {
                     let c = a + length;
                     let closes = length + 1 == n;
-                    if !closes && self.are_joined(corners[a], corners[c]) {
+                    if !closes && self.are_joined(a as u32, c as u32) {
                         return Cell::IMPOSSIBLE;
                     }
                     let beyond = if closes { normals[n - 1] } else { DVec3::ZERO };
                     best_apex(
-                        &points,
+                        points,
                         a,
                         c,
                         &rows[a * n..(a + 1) * n],
@@ -203,7 +185,7 @@ impl Rim<'_> {
                 continue;
             }
             let b = rows[a * n + c].apex as usize;
-            triangles.push([corners[a], corners[b], corners[c]]);
+            triangles.push([a as u32, b as u32, c as u32]);
             stack.extend([(b, c), (a, b)]);
         }
         Ok(Some((triangles, whole)))
@@ -221,32 +203,13 @@ fn best_apex(
 ) -> Cell {
     let mut best = Cell::IMPOSSIBLE;
     for b in a + 1..c {
-        let (first, second) = (&row[b], &column[b]);
-        let below = first.bend.max(second.bend);
-        if below > best.bend || !below.is_finite() {
-            continue;
-        }
-        let cross = (points[b] - points[a]).cross(points[c] - points[b]);
-        let length = cross.length();
-        // What lies beyond a triangle without area could look anywhere: it counts as folded.
-        let (normal, bend) = if length > 0.0 {
-            let normal = cross / length;
-            let sides = bend(normal, first.normal).max(bend(normal, second.normal));
-            (normal, below.max(sides).max(bend(normal, beyond)))
-        } else {
-            (DVec3::ZERO, FOLDED)
-        };
-        let area = first.area + second.area + 0.5 * length;
-        let cell = Cell { bend, area, normal, apex: b as u32 };
-        if cell.is_better_than(&best) {
-            best = cell;
-        }
+        best.offer([points[a], points[b], points[c]], [&row[b], &column[b]], b as u32, beyond);
     }
     best
 }
 
 /// 1 − cos of the angle between two normals; none where one of them is zero.
-fn bend(a: DVec3, b: DVec3) -> f64 {
+pub(super) fn bend(a: DVec3, b: DVec3) -> f64 {
     if a == DVec3::ZERO || b == DVec3::ZERO { 0.0 } else { 1.0 - a.dot(b) }
 }
 

@@ -4,3 +4,5 @@ mod any_cost;
 mod holes;
 mod progressive;
 mod quadrics;
+mod sampling;
+mod voronoi;
