@@ -9,7 +9,7 @@ use dgp_mesh::{Mesh, VertexId, curvature::principal_curvatures};
 use crate::Error;
 
 /// The part of the vertices that bend less than the high value.
-const HIGH: f64 = 0.95;
+const HIGH: f64 = 0.99;
 
 /// The high value over the low one.
 const RANGE: f64 = 100.0;

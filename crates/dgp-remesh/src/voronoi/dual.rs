@@ -3,66 +3,61 @@
 //! A vertex lies at the point of its cluster nearest to the mean, or nearest to where the planes of its faces meet; that
 //! of a cluster on the boundary at the point of its part of the boundary nearest to the mean of that part.
 
-use dgp_mesh::{
-    Attributes, CornerId, DVec3, FaceId, FaceList, HalfedgeId, IndexedFaceSet, Mesh, Progress,
-    VertexId, measure::barycentric_3d,
-};
+use dgp_mesh::{DMat3, DVec3, FaceList, IndexedFaceSet, Mesh, VertexId, linear::symmetric_eigen};
 
 use super::{VoronoiPlacement, clusters::Clusters, flaws::labels};
-use crate::{Error, Quadric, sample::mixed};
+use crate::{Error, Quadric};
 
-/// How much the mean counts beside the planes: directions in which faces bend less stay free.
-const DAMPING: f64 = 1e-2;
+/// How much the mean counts beside the planes: along an edge the vertex stays where it is.
+const DAMPING: f64 = 1e-3;
 
 /// Corners of planes are taken up to so many spreads from the mean.
 const FAR: f64 = 2.0;
+
+/// The part of the weight of its planes in the second direction from which a cluster has an edge: that of two planes
+/// that meet at some 30° in its middle.
+const EDGE: f64 = 0.06;
 
 /// A point of the refined input.
 #[derive(Clone, Copy)]
 struct Place {
     square: f64,
     point: DVec3,
-    face: FaceId,
 }
 
-/// The mesh of the clusters with the data of `input`, and the names of data that it cannot have.
+/// The mesh of the clusters at unit scale, and which of its vertices are to stay where they are.
 pub(super) fn dual(
-    input: &Mesh,
     clusters: &Clusters<'_>,
     placement: VoronoiPlacement,
-    progress: Progress<'_>,
-) -> Result<(Mesh, Vec<String>), Error> {
-    let fine = clusters.fine;
-    let places = places(clusters, &targets(clusters, placement));
-    progress.report(0.5)?;
-    let (mut triangles, mut sources) = (Vec::new(), Vec::new());
-    for f in fine.mesh.faces() {
-        let [a, b, c] = labels(clusters, f);
-        if a != b && b != c && c != a {
-            triangles.push([a, b, c].map(|label| VertexId::new(label as usize)));
-            sources.push(FaceId::new(fine.parents[f.index()] as usize));
-        }
+) -> Result<(Mesh, Vec<bool>), Error> {
+    let mesh = &clusters.fine.mesh;
+    let (targets, mut is_fixed) = targets(clusters, placement);
+    let places = places(clusters, &targets);
+    let faces = mesh.faces().map(|f| labels(clusters, f));
+    let triangles = faces.filter(|[a, b, c]| a != b && b != c && c != a);
+    let triangles = triangles.map(|labels| labels.map(|label| VertexId::new(label as usize)));
+    let faces = FaceList::from_triangles(triangles.collect());
+    let positions: Vec<DVec3> = places.iter().map(|place| place.point).collect();
+    for v in mesh.vertices().filter(|&v| clusters.is_border(v) && !mesh.is_isolated_vertex(v)) {
+        is_fixed[clusters.label(v) as usize] = true;
     }
-    let positions: Vec<DVec3> = places.iter().map(|place| place.point * fine.unit).collect();
-    let mut set = IndexedFaceSet::new(positions, FaceList::from_triangles(triangles))?;
-    let dropped = carry(input, clusters, &places, &sources, &mut set);
-    Ok((Mesh::new(&set)?, dropped))
+    Ok((Mesh::new(&IndexedFaceSet::new(positions, faces)?)?, is_fixed))
 }
 
-/// Where the vertices should be.
-fn targets(clusters: &Clusters<'_>, placement: VoronoiPlacement) -> Vec<DVec3> {
+/// Where the vertices should be, and whether there is an edge or a corner.
+fn targets(clusters: &Clusters<'_>, placement: VoronoiPlacement) -> (Vec<DVec3>, Vec<bool>) {
     let means: Vec<DVec3> = (0..clusters.len() as u32).map(|k| clusters.mean(k)).collect();
+    let count = means.len();
     if placement == VoronoiPlacement::Mean {
-        return means;
+        return (means, vec![false; count]);
     }
     let mesh = &clusters.fine.mesh;
-    let mut quadrics = vec![Quadric::default(); means.len()];
+    let mut quadrics = vec![Quadric::default(); count];
     for f in mesh.faces() {
-        let corners = labels(clusters, f);
         let first = mesh.face_halfedge(f);
         let points =
             [first, mesh.next(first), mesh.prev(first)].map(|h| mesh.position(mesh.from(h)));
-        for label in corners {
+        for label in labels(clusters, f) {
             // From the mean, so that no digits are lost.
             let mean = means[label as usize];
             quadrics[label as usize] += Quadric::triangle(points.map(|p| p - mean));
@@ -70,17 +65,27 @@ fn targets(clusters: &Clusters<'_>, placement: VoronoiPlacement) -> Vec<DVec3> {
     }
     let spreads = clusters.spreads();
     let target = |k: usize| {
-        let best = quadrics[k].minimum_near(DVec3::ZERO, DAMPING);
-        best.filter(|p| p.length_squared() <= FAR * FAR * spreads[k])
-            .map_or(means[k], |p| means[k] + p)
+        let quadric = &quadrics[k];
+        let matrix = DMat3::from_cols(
+            quadric.times(DVec3::X),
+            quadric.times(DVec3::Y),
+            quadric.times(DVec3::Z),
+        );
+        if symmetric_eigen(&matrix).values.y <= EDGE * quadric.weight() {
+            return None;
+        }
+        let best = quadric.minimum_near(DVec3::ZERO, DAMPING);
+        best.filter(|p| p.length_squared() <= FAR * FAR * spreads[k]).map(|p| means[k] + p)
     };
-    (0..means.len()).map(target).collect()
+    let sharp: Vec<Option<DVec3>> = (0..count).map(target).collect();
+    let targets = sharp.iter().zip(&means).map(|(target, mean)| target.unwrap_or(*mean)).collect();
+    (targets, sharp.iter().map(Option::is_some).collect())
 }
 
 /// The point of each cluster nearest to its target.
 fn places(clusters: &Clusters<'_>, targets: &[DVec3]) -> Vec<Place> {
     let mesh = &clusters.fine.mesh;
-    let none = Place { square: f64::INFINITY, point: DVec3::ZERO, face: FaceId::new(0) };
+    let none = Place { square: f64::INFINITY, point: DVec3::ZERO };
     let mut places = vec![none; targets.len()];
     for f in mesh.faces() {
         let first = mesh.face_halfedge(f);
@@ -90,7 +95,7 @@ fn places(clusters: &Clusters<'_>, targets: &[DVec3]) -> Vec<Place> {
         for (label, is_new) in [(a, true), (b, b != a), (c, c != a && c != b)] {
             if is_new {
                 let target = targets[label as usize];
-                offer(&mut places[label as usize], target, nearest_in_triangle(target, points), f);
+                offer(&mut places[label as usize], target, nearest_in_triangle(target, points));
             }
         }
     }
@@ -99,10 +104,10 @@ fn places(clusters: &Clusters<'_>, targets: &[DVec3]) -> Vec<Place> {
 }
 
 /// Takes a point if it is nearer.
-fn offer(place: &mut Place, target: DVec3, point: DVec3, face: FaceId) {
+fn offer(place: &mut Place, target: DVec3, point: DVec3) {
     let square = point.distance_squared(target);
     if square < place.square {
-        *place = Place { square, point, face };
+        *place = Place { square, point };
     }
 }
 
@@ -133,58 +138,16 @@ fn on_border(clusters: &Clusters<'_>, places: &mut [Place]) {
     for e in border() {
         let ends = mesh.edge_vertices(e);
         let points = ends.map(|v| mesh.position(v));
-        let Some(face) = mesh.edge_faces(e).into_iter().flatten().next() else { continue };
         for (k, &end) in ends.iter().enumerate() {
             let label = clusters.label(end) as usize;
             let (sum, weight) = means[label];
             if weight > 0.0 {
                 let target = sum / weight;
                 let point = nearest_on_side(target, points[k], 0.5 * (points[0] + points[1]));
-                offer(&mut places[label], target, point, face);
+                offer(&mut places[label], target, point);
             }
         }
     }
-}
-
-/// Data of the input for the vertices, faces and corners of the result; returns what has no place there.
-fn carry(
-    input: &Mesh,
-    clusters: &Clusters<'_>,
-    places: &[Place],
-    sources: &[FaceId],
-    set: &mut IndexedFaceSet,
-) -> Vec<String> {
-    let Attributes { vertex, corner, edge, face } = input.attributes();
-    let mut dropped: Vec<String> = edge.names().map(str::to_owned).collect();
-    // Columns of corners that are the same around each vertex are data of vertices in truth.
-    let around = |v: VertexId| {
-        let corners = input.vertex_halfedges(v).filter(|&h| input.face(h).is_some());
-        let corners: Vec<HalfedgeId> = corners.collect();
-        (1..corners.len()).map(|i| [corners[0], corners[i]]).collect::<Vec<_>>()
-    };
-    let jumping = corner.differing(input.vertices().flat_map(around));
-    let parts = |k: usize| {
-        let face = FaceId::new(clusters.fine.parents[places[k].face.index()] as usize);
-        let first = input.face_halfedge(face);
-        let corners = [first, input.next(first), input.prev(first)];
-        let points = corners.map(|h| input.position(input.from(h)) / clusters.fine.unit);
-        let weights = barycentric_3d(places[k].point, points).unwrap_or([1.0, 0.0, 0.0]);
-        let weights = weights.map(|x| x.max(0.0));
-        let sum: f64 = weights.iter().sum();
-        [0, 1, 2].map(|k| (weights[k] / sum, corners[k]))
-    };
-    set.vertex_attributes =
-        mixed(vertex, places.len(), |k| parts(k).map(|(weight, h)| (weight, input.from(h))));
-    let at_vertices = mixed(corner, places.len(), parts);
-    let faces = set.faces().clone();
-    set.corner_attributes =
-        at_vertices.gather(faces.corners().len(), |c: CornerId| Some(faces.vertex(c)));
-    for name in jumping {
-        set.corner_attributes.remove(&name);
-        dropped.push(name);
-    }
-    set.face_attributes = face.gather(sources.len(), |f: FaceId| Some(sources[f.index()]));
-    dropped
 }
 
 /// The point between `a` and `b` nearest to `p`.

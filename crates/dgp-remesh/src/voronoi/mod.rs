@@ -13,6 +13,8 @@
 //! | cluster | moves vertices between clusters as long as E gets less | `clusters.rs` |
 //! | mend | halves clusters whose dual would be no such surface | `flaws.rs` |
 //! | dual | a vertex for each cluster, a triangle where three meet | `dual.rs` |
+//! | relax | moves vertices to the means of their Voronoi cells on the surface, flips edges | `relax.rs` |
+//! | carry | data of the input | `carry.rs` |
 //!
 //! - Input: a triangle mesh; its vertices on no face are left out.
 //! - Cost: O(F log F) for F faces of the refined input; the clustering in one thread.
@@ -22,15 +24,18 @@
 //! - Reference: Valette, Chassery and Prost, "Generic remeshing of 3D triangular meshes with metric-dependent
 //!   discrete Voronoi diagrams", IEEE Transactions on Visualization and Computer Graphics 14(2), 2008; Edelsbrunner
 //!   and Shah, "Triangulating topological spaces", 1997 (what makes the dual the same surface).
-//! - Departs from it: a vertex changes only where both clusters stay what they are topologically; the gain of a change
+//! - Departs from it: the clusters are followed by steps of Lloyd's on the surface itself, since moves of single vertices
+//!   come to an end before the cells are centroidal; a vertex changes only where both clusters stay what they are topologically; the gain of a change
 //!   is that of Hartigan, "Clustering algorithms", 1975, which loses no digits; edges are halved where they are long
 //!   instead of all faces cut in four; the density is the only metric.
 
+mod carry;
 mod clusters;
 mod density;
 mod dual;
 mod flaws;
 mod refine;
+mod relax;
 mod seeds;
 
 use dgp_mesh::{
@@ -42,6 +47,7 @@ use dgp_mesh::{
 use crate::Error;
 use clusters::Clusters;
 use refine::Fine;
+use relax::Ground;
 
 /// Where in its cluster a vertex of the result lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,15 +71,19 @@ pub struct VoronoiOptions {
     pub gradation: f64,
     /// Where in its cluster a vertex lies.
     pub placement: VoronoiPlacement,
+    /// How often vertices are moved to the means of their cells in the end; 40 give most of the angles there are to
+    /// be had.
+    pub relaxations: usize,
 }
 
 impl Default for VoronoiOptions {
     fn default() -> Self {
         VoronoiOptions {
             seed: 0,
-            resolution: 30.0,
+            resolution: 10.0,
             gradation: 0.0,
             placement: VoronoiPlacement::default(),
+            relaxations: 40,
         }
     }
 }
@@ -145,10 +155,10 @@ pub fn voronoi_remesh(
     let seeds = seeds::seeds(&fine, vertices, options, progress.part(0.2, 0.35))?;
     let mut clusters = Clusters::new(&fine, &seeds);
     let before = clusters.energy();
-    let mut moves = clusters.improve(progress.part(0.35, 0.8))?;
+    let mut moves = clusters.improve(progress.part(0.35, 0.5))?;
     let (mut splits, mut rounds) = (0, 0);
     loop {
-        progress.part(0.8, 0.9).report(1.0 - 1.0 / (1.0 + rounds as f64))?;
+        progress.part(0.5, 0.6).report(1.0 - 1.0 / (1.0 + rounds as f64))?;
         let flawed = flaws::flawed(&clusters);
         if flawed.is_empty() {
             break;
@@ -161,11 +171,19 @@ pub fn voronoi_remesh(
         rounds += 1;
     }
     let energy = if before > 0.0 { clusters.energy() / before } else { 1.0 };
-    let (result, dropped) =
-        dual::dual(mesh, &clusters, options.placement, progress.part(0.9, 1.0))?;
-    let angles = corner_angles(&result);
-    let smallest = |f| result.face_halfedges(f).map(|h| angles[h]).fold(f64::INFINITY, f64::min);
-    let sum: f64 = result.faces().map(smallest).sum();
+    let (mut result, is_fixed) = dual::dual(&clusters, options.placement)?;
+    let ground = Ground::new(mesh, fine.unit, &density)?;
+    let clustered = (mean_smallest_angle(&result), result.clone());
+    let steps = options.relaxations;
+    relax::relax(&mut result, &is_fixed, &ground, steps, progress.part(0.6, 0.95))?;
+    // Cells of very few vertices are larger than what stars tell of them.
+    if mean_smallest_angle(&result) < clustered.0 {
+        result = clustered.1;
+    }
+    let dropped = carry::carry(mesh, &ground, &mut result)?;
+    for v in result.vertices() {
+        result.set_position(v, result.position(v) * fine.unit);
+    }
     let inner = || result.vertices().filter(|&v| !result.is_boundary_vertex(v));
     let regular = inner().filter(|&v| result.valence(v) == 6).count() as f64;
     let report = VoronoiReport {
@@ -177,7 +195,7 @@ pub fn voronoi_remesh(
         splits,
         topology_kept: topology(mesh) == topology(&result),
         minimum_angle: minimum_angle(&result).unwrap_or(0.0),
-        mean_minimum_angle: sum / result.face_count() as f64,
+        mean_minimum_angle: mean_smallest_angle(&result),
         regular: regular / inner().count().max(1) as f64,
         dropped,
     };
@@ -210,6 +228,13 @@ fn check(mesh: &Mesh, vertices: usize, options: &VoronoiOptions) -> Result<(), E
         dgp_mesh::Error::NotTriangle { face, degree } => Error::NotTriangle { face, degree },
         other => other.into(),
     })
+}
+
+/// The mean over the triangles of their smallest angles.
+fn mean_smallest_angle(mesh: &Mesh) -> f64 {
+    let angles = corner_angles(mesh);
+    let smallest = |f| mesh.face_halfedges(f).map(|h| angles[h]).fold(f64::INFINITY, f64::min);
+    mesh.faces().map(smallest).sum::<f64>() / mesh.face_count() as f64
 }
 
 /// Components, boundary loops, Euler characteristic.

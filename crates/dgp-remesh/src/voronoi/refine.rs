@@ -12,15 +12,12 @@ use dgp_mesh::{
 
 use crate::{Error, sample::power_of_two};
 
-/// Names of the columns that follow the edits.
-const PARENT: &str = "parent";
+/// The name of the column that follows the edits.
 const DENSITY: &str = "density";
 
 /// The refined input at unit scale.
 pub(super) struct Fine {
     pub(super) mesh: Mesh,
-    /// The face of the input of which each face is a part.
-    pub(super) parents: Vec<u32>,
     pub(super) density: Vec<f64>,
     /// The area of each vertex.
     pub(super) areas: Vec<f64>,
@@ -42,9 +39,7 @@ impl Fine {
         let unit = power_of_two(largest);
         let positions: Vec<DVec3> = input.positions().values().iter().map(|&p| p / unit).collect();
         let mut mesh = Mesh::from_parts(input.connectivity().clone(), positions.into());
-        let attributes = mesh.attributes_mut();
-        attributes.face.insert(PARENT, (0..input.face_count() as u32).collect::<Vec<u32>>());
-        attributes.vertex.insert(DENSITY, density.to_vec());
+        mesh.attributes_mut().vertex.insert(DENSITY, density.to_vec());
         let areas = vertex_areas(&mesh, VertexArea::Barycentric);
         let whole: f64 =
             areas.values().iter().zip(density).map(|(area, density)| area * density.sqrt()).sum();
@@ -55,11 +50,9 @@ impl Fine {
         let longest = 2.0 / 3_f64.sqrt() * whole / (resolution * count as f64);
         halve(&mut mesh, longest, resolution * count as f64, progress)?;
         let areas = vertex_areas(&mesh, VertexArea::Barycentric).into_values();
-        let parents = mesh.attributes().face.get::<u32>(PARENT);
-        let parents = parents.map_or_else(Vec::new, |column| column.values().to_vec());
         let density = mesh.attributes().vertex.get::<f64>(DENSITY);
         let density = density.map_or_else(Vec::new, |column| column.values().to_vec());
-        Ok(Fine { mesh, parents, density, areas, unit })
+        Ok(Fine { mesh, density, areas, unit })
     }
 }
 
