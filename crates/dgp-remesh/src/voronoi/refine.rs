@@ -15,6 +15,9 @@ use crate::{Error, sample::power_of_two};
 /// The name of the column that follows the edits.
 const DENSITY: &str = "density";
 
+/// Edges are halved up to so many times the vertices that equal triangles would have.
+const MOST: f64 = 8.0;
+
 /// The refined input at unit scale.
 pub(super) struct Fine {
     pub(super) mesh: Mesh,
@@ -80,6 +83,8 @@ fn halve(
     if waiting.is_empty() {
         return Ok(());
     }
+    // A surface that is nearly lines has little area and long edges.
+    let most = MOST * expected + mesh.edge_count() as f64;
     let mut editor = Editor::new(mesh);
     let mut cuts = 0_usize;
     while let Some((bits, Reverse(e))) = waiting.pop() {
@@ -89,6 +94,9 @@ fn halve(
         }
         if cuts.is_multiple_of(STEP) {
             progress.report((cuts as f64 / expected).min(1.0))?;
+        }
+        if cuts as f64 > most {
+            break;
         }
         cuts += 1;
         let [a, b] = editor.mesh().edge_vertices(e).map(|v| editor.mesh().position(v));
