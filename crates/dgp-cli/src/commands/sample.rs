@@ -90,7 +90,7 @@ impl Sample {
             session.warn(format!("{}: polygons are cut into triangles first", path.display()));
             let cut =
                 |p: Progress<'_>| triangulate_faces(&surface, TriangulationMethod::default(), p);
-            surface = session.run("triangulating", cut).map_err(in_file)?;
+            surface = session.run("triangulating", cut).map_err(in_file)?.0;
         }
         let seed = common.seed;
         let (samples, report) =

@@ -61,6 +61,7 @@ impl Voronoi {
             resolution: self.resolution,
             gradation: self.gradation,
             placement: if self.sharp { VoronoiPlacement::Sharp } else { VoronoiPlacement::Mean },
+            ..VoronoiOptions::default()
         };
         let count = self.vertices.count(mesh.vertex_count());
         let (result, report) = session

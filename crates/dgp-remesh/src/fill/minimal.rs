@@ -13,18 +13,22 @@
 //!   bend at a c depends on what is chosen on its other side; same bits for any number of threads.
 //! - Reference: Barequet and Sharir, "Filling gaps in the boundary of a polyhedron", Computer Aided
 //!   Geometric Design 12, 1995; Liepa, "Filling holes in meshes", Symposium on Geometry Processing, 2003.
-//! - Departs from it: triangles without area count as folded; candidates that cannot be better are left out before their triangle is looked at.
+//! - Departs from it: triangles without area count as folded; candidates that cannot be better than others, or than what
+//!   a few lines give, are left out before their triangle is looked at, several at a time.
 
 use dgp_mesh::{DVec3, Progress, parallel};
 
 use super::sparse;
 use crate::Error;
 
+/// For longer rims a limit is worth its time.
+const SHORT: usize = 64;
+
 /// For rims of more corners only some lines between corners are looked at.
-pub(super) const WHOLE: usize = 200;
+pub(super) const WHOLE: usize = 1200;
 
 /// Where some lines are not enough all are tried, up to so many corners.
-const PATIENCE: usize = 1500;
+const PATIENCE: usize = 2000;
 
 /// Levels with fewer candidates are not shared among threads.
 const SHARED: usize = 20_000;
@@ -115,14 +119,21 @@ impl Rim<'_> {
         progress: Progress<'_>,
     ) -> Result<Option<Triangulation>, Error> {
         let n = self.points.len();
-        let whole = |progress| self.best(progress);
-        let chosen = if n <= WHOLE {
-            whole(progress)?
+        let chosen = if n <= SHORT {
+            self.best(f64::INFINITY, progress)?
         } else {
-            match sparse::best(self, progress.part(0.0, 0.9))? {
-                None if n <= PATIENCE => whole(progress.part(0.9, 1.0))?,
-                found => found,
-            }
+            // What a few lines give tells how much none of the parts may bend.
+            let few = sparse::best(self, n > WHOLE, progress.part(0.0, 0.3))?;
+            let limit = few.as_ref().map_or(f64::INFINITY, |(_, cell)| cell.bend);
+            let all = match few {
+                Some(_) if n > WHOLE => None,
+                _ if n > PATIENCE => None,
+                _ => self.best(limit, progress.part(0.3, 1.0))?,
+            };
+            [few, all]
+                .into_iter()
+                .flatten()
+                .reduce(|x, y| if y.1.is_better_than(&x.1) { y } else { x })
         };
         Ok(chosen.map(|(triangles, cell)| Triangulation {
             triangles,
@@ -135,46 +146,31 @@ impl Rim<'_> {
         self.joined[a as usize].binary_search(&b).is_ok()
     }
 
-    /// The best triangulation of all; `None` where there is none.
-    pub(super) fn best(&self, progress: Progress<'_>) -> Result<Option<Chosen>, Error> {
-        let Rim { points, normals, .. } = *self;
-        let n = points.len();
-        // What is known of a and c, by a and by c: both are read one after the other.
-        let mut rows = vec![Cell::IMPOSSIBLE; n * n];
-        let mut columns = vec![Cell::IMPOSSIBLE; n * n];
-        for i in 0..n - 1 {
-            rows[i * n + i + 1] = Cell::side(normals[i]);
-            columns[(i + 1) * n + i] = rows[i * n + i + 1];
-        }
+    /// The best triangulation over all lines, if it bends less than `limit` or as much; `None` where there is none.
+    pub(super) fn best(&self, limit: f64, progress: Progress<'_>) -> Result<Option<Chosen>, Error> {
+        let n = self.points.len();
+        let mut table = Table::new(self);
         for length in 2..n {
-            progress.report(length as f64 / n as f64)?;
+            progress.report((length as f64 / n as f64).powi(2))?;
             let count = n - length;
             let block = if count * length < SHARED { count } else { count.div_ceil(16) };
             let level = parallel::map_blocks(count, block, |range| {
-                let found = range.map(|a| {
+                let cell = |a: usize| {
                     let c = a + length;
                     let closes = length + 1 == n;
                     if !closes && self.are_joined(a as u32, c as u32) {
                         return Cell::IMPOSSIBLE;
                     }
-                    let beyond = if closes { normals[n - 1] } else { DVec3::ZERO };
-                    best_apex(
-                        points,
-                        a,
-                        c,
-                        &rows[a * n..(a + 1) * n],
-                        &columns[c * n..(c + 1) * n],
-                        beyond,
-                    )
-                });
-                found.collect::<Vec<Cell>>()
+                    let beyond = if closes { self.normals[n - 1] } else { DVec3::ZERO };
+                    table.best_apex(self.points, [a, c], limit, beyond)
+                };
+                range.map(cell).collect::<Vec<Cell>>()
             });
             for (a, cell) in level.into_iter().flatten().enumerate() {
-                rows[a * n + a + length] = cell;
-                columns[(a + length) * n + a] = cell;
+                table.set(a, a + length, &cell);
             }
         }
-        let whole = rows[n - 1];
+        let whole = table.cell(0, n - 1);
         if whole.apex == u32::MAX {
             return Ok(None);
         }
@@ -184,28 +180,96 @@ impl Rim<'_> {
             if c - a < 2 {
                 continue;
             }
-            let b = rows[a * n + c].apex as usize;
+            let b = table.cell(a, c).apex as usize;
             triangles.push([a as u32, b as u32, c as u32]);
             stack.extend([(b, c), (a, b)]);
         }
-        Ok(Some((triangles, whole)))
+        Ok(Some((triangles, *whole)))
     }
 }
 
-/// The best triangle at the line from a to c, given what is known of a and each b and of each b and c.
-fn best_apex(
-    points: &[DVec3],
-    a: usize,
-    c: usize,
-    row: &[Cell],
-    column: &[Cell],
-    beyond: DVec3,
-) -> Cell {
-    let mut best = Cell::IMPOSSIBLE;
-    for b in a + 1..c {
-        best.offer([points[a], points[b], points[c]], [&row[b], &column[b]], b as u32, beyond);
+/// What is known of a and c > a, by a and by c: both are read one after the other.
+struct Table {
+    n: usize,
+    row_bends: Vec<f64>,
+    rows: Vec<Cell>,
+    column_bends: Vec<f64>,
+    columns: Vec<Cell>,
+}
+
+impl Table {
+    fn new(rim: &Rim<'_>) -> Self {
+        let n = rim.points.len();
+        let size = n * (n - 1) / 2;
+        let mut table = Table {
+            n,
+            row_bends: vec![f64::INFINITY; size],
+            rows: vec![Cell::IMPOSSIBLE; size],
+            column_bends: vec![f64::INFINITY; size],
+            columns: vec![Cell::IMPOSSIBLE; size],
+        };
+        for a in 0..n - 1 {
+            table.set(a, a + 1, &Cell::side(rim.normals[a]));
+        }
+        table
     }
-    best
+
+    /// Where the row of `a` has what is known of it and a + 1.
+    fn row(&self, a: usize) -> usize {
+        a * (2 * self.n - a - 1) / 2
+    }
+
+    /// Where the column of `c` has what is known of 0 and it.
+    fn column(c: usize) -> usize {
+        c * (c - 1) / 2
+    }
+
+    fn cell(&self, a: usize, c: usize) -> &Cell {
+        &self.rows[self.row(a) + c - a - 1]
+    }
+
+    fn set(&mut self, a: usize, c: usize, cell: &Cell) {
+        let (row, column) = (self.row(a) + c - a - 1, Self::column(c) + a);
+        self.row_bends[row] = cell.bend;
+        self.rows[row] = *cell;
+        self.column_bends[column] = cell.bend;
+        self.columns[column] = *cell;
+    }
+
+    /// The best triangle at the line from a to c, given what is known of a and each b and of each b and c.
+    fn best_apex(&self, points: &[DVec3], [a, c]: [usize; 2], limit: f64, beyond: DVec3) -> Cell {
+        /// Apexes that are looked at together.
+        const FEW: usize = 16;
+        let (row, column) = (self.row(a), Self::column(c));
+        let (rows, columns) = (row..row + c - a - 1, column + a + 1..column + c);
+        let (firsts, seconds) = (&self.rows[rows.clone()], &self.columns[columns.clone()]);
+        let mut best = Cell { bend: limit, ..Cell::IMPOSSIBLE };
+        let mut offer = |k: usize| {
+            let b = a + 1 + k;
+            let parts = [&firsts[k], &seconds[k]];
+            best.offer([points[a], points[b], points[c]], parts, b as u32, beyond);
+            best.bend
+        };
+        // That of a shorter line leaves little for the others.
+        let guess = self.cell(a, c - 1).apex;
+        let mut most = if guess < c as u32 { offer(guess as usize - a - 1) } else { limit };
+        let bends = self.row_bends[rows].chunks(FEW).zip(self.column_bends[columns].chunks(FEW));
+        for (chunk, (firsts, seconds)) in bends.enumerate() {
+            // Without a branch for each, so that several are compared at a time.
+            let larger = |(x, y): (&f64, &f64)| if x > y { *x } else { *y };
+            let smaller = |x: f64, y: f64| if x < y { x } else { y };
+            let least = firsts.iter().zip(seconds).map(larger).fold(f64::INFINITY, smaller);
+            if least > most || least == f64::INFINITY {
+                continue;
+            }
+            for (k, pair) in firsts.iter().zip(seconds).enumerate() {
+                if larger(pair) <= most {
+                    most = offer(FEW * chunk + k);
+                }
+            }
+        }
+        if best.apex == u32::MAX { Cell::IMPOSSIBLE } else { best }
+    }
 }
 
 /// 1 − cos of the angle between two normals; none where one of them is zero.

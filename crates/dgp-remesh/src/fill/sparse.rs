@@ -21,34 +21,63 @@ use dgp_mesh::{DVec3, Progress, spatial::PointTree};
 use super::minimal::{Cell, Chosen, Rim, bend};
 use crate::Error;
 
-/// Nearest corners in space that a corner is joined to, at each scale.
-const NEAR: usize = 6;
+/// How many lines there are.
+struct Scale {
+    /// Nearest corners in space that a corner is joined to, at each scale.
+    near: usize,
+    /// Corners along the rim to each side, at each scale.
+    along: usize,
+    /// The coarsest scale has no more corners than twice this.
+    coarsest: usize,
+}
 
-/// Corners along the rim to each side, at each scale.
-const ALONG: usize = 2;
+/// To know about how much a cover bends.
+const COARSE: Scale = Scale { near: 2, along: 1, coarsest: 8 };
 
-/// The coarsest scale has no more corners than twice this.
-const COARSEST: usize = 16;
+/// To find one that bends little.
+const FINE: Scale = Scale { near: 6, along: 2, coarsest: 40 };
 
 /// How often what was found is made better.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 12;
+
+/// More corners are not worst.
+const MANY: usize = 32;
 
 /// Lines of the cover that bend within this of the most are looked at again.
 const WORST: f64 = 1e-9;
 
-/// The best triangulation of a rim between corners near each other; `None` if there is none.
-pub(super) fn best(rim: &Rim<'_>, progress: Progress<'_>) -> Result<Option<Chosen>, Error> {
-    let mut lines = candidates(rim, progress.part(0.0, 0.2))?;
+/// The best triangulation of a rim between corners near each other, made better if that is all there will be; `None` if
+/// there is none.
+pub(super) fn best(
+    rim: &Rim<'_>,
+    is_all: bool,
+    progress: Progress<'_>,
+) -> Result<Option<Chosen>, Error> {
+    let lines = candidates(rim, &COARSE, progress.part(0.0, 0.05))?;
+    let mut best = solve(rim, &lines, f64::INFINITY, progress.part(0.05, 0.2))?;
+    if !is_all {
+        return Ok(best);
+    }
     let part = |round: usize| {
         let at = |i: usize| 0.2 + 0.8 * i as f64 / (ROUNDS + 1) as f64;
         progress.part(at(round), at(round + 1))
     };
-    let mut best: Option<Chosen> = solve(rim, &lines, part(0))?;
-    for round in 1..=ROUNDS {
+    let mut lines = candidates(rim, &FINE, Progress::NONE)?;
+    for round in 0..=ROUNDS {
+        let limit = best.as_ref().map_or(f64::INFINITY, |(_, cell)| cell.bend);
+        let found = solve(rim, &lines, limit, part(round))?;
+        let is_better = match (&found, &best) {
+            (Some(found), Some(best)) => found.1.is_better_than(&best.1),
+            (found, _) => found.is_some(),
+        };
+        if is_better {
+            best = found;
+        } else if round > 0 {
+            break;
+        }
         let Some((triangles, cell)) = &best else { break };
-        let more = around(rim, triangles, cell);
         let before: usize = lines.iter().map(Vec::len).sum();
-        for [a, b] in more {
+        for [a, b] in around(rim, triangles, cell) {
             let (a, b) = (a.min(b), a.max(b));
             if b > a + 1 && !rim.are_joined(a, b) {
                 lines[a as usize].push(b);
@@ -58,11 +87,6 @@ pub(super) fn best(rim: &Rim<'_>, progress: Progress<'_>) -> Result<Option<Chose
         if lines.iter().map(Vec::len).sum::<usize>() == before {
             break;
         }
-        let Some(found) = solve(rim, &lines, part(round))? else { break };
-        if !found.1.is_better_than(cell) {
-            break;
-        }
-        best = Some(found);
     }
     Ok(best)
 }
@@ -75,7 +99,11 @@ fn sort(lines: &mut [Vec<u32>]) {
 }
 
 /// For each corner those after it that it may be joined to, ascending; the next along the rim among them.
-fn candidates(rim: &Rim<'_>, progress: Progress<'_>) -> Result<Vec<Vec<u32>>, Error> {
+fn candidates(
+    rim: &Rim<'_>,
+    scale: &Scale,
+    progress: Progress<'_>,
+) -> Result<Vec<Vec<u32>>, Error> {
     let n = rim.points.len();
     let mut lines: Vec<Vec<u32>> = vec![Vec::new(); n];
     let mut join = |a: usize, b: usize| {
@@ -89,7 +117,7 @@ fn candidates(rim: &Rim<'_>, progress: Progress<'_>) -> Result<Vec<Vec<u32>>, Er
     loop {
         progress.report((step as f64 / n as f64).min(1.0))?;
         let count = n.div_ceil(step);
-        let is_last = count <= 2 * COARSEST;
+        let is_last = count <= 2 * scale.coarsest;
         if is_last {
             (0..n).for_each(|a| (0..count).for_each(|k| join(a, k * step)));
             break;
@@ -97,11 +125,11 @@ fn candidates(rim: &Rim<'_>, progress: Progress<'_>) -> Result<Vec<Vec<u32>>, Er
         let points: Vec<DVec3> = rim.points.iter().step_by(step).copied().collect();
         let tree = PointTree::new(&points, Progress::NONE)?;
         for a in 0..n {
-            for near in tree.nearest_points(rim.points[a], NEAR + 1) {
+            for near in tree.nearest_points(rim.points[a], scale.near + 1) {
                 join(a, near.index * step);
             }
             let place = a / step;
-            for k in place + count - ALONG..=place + count + ALONG + 1 {
+            for k in place + count - scale.along..=place + count + scale.along + 1 {
                 join(a, k % count * step);
             }
         }
@@ -145,114 +173,106 @@ fn around(rim: &Rim<'_>, triangles: &[[u32; 3]], cell: &Cell) -> Vec<[u32; 2]> {
     worst.sort_unstable();
     worst.dedup();
     // On a rim that bends nowhere, or alike everywhere, no corner is worst.
-    if worst.len() <= 2 * COARSEST {
+    if worst.len() <= MANY {
         lines.extend(worst.iter().flat_map(|&a| (0..n).map(move |b| [a, b])));
     }
     lines
 }
 
-/// The lines from the lower corner on, with what is known of each, and for each corner those that end there.
+/// What is known of the lines that can be part of a cover, from their lower and from their upper corner on.
 struct Table {
-    starts: Vec<usize>,
-    ends: Vec<u32>,
     cells: Vec<Cell>,
-    /// For each corner the corners of lower number and their lines, ascending.
-    below_starts: Vec<usize>,
-    below: Vec<(u32, u32)>,
+    /// For each corner the higher corners, ascending, with the largest bend of the part and the place of its cell.
+    above: Vec<Vec<(u32, f64, u32)>>,
+    /// For each corner the lower corners, descending.
+    below: Vec<Vec<(u32, f64, u32)>>,
 }
 
 impl Table {
-    fn new(rim: &Rim<'_>, lines: &[Vec<u32>]) -> Self {
-        let n = lines.len();
-        let mut starts = vec![0];
-        let mut ends = Vec::new();
-        let mut below_starts = vec![0; n + 1];
-        for list in lines {
-            ends.extend(list);
-            starts.push(ends.len());
-            list.iter().for_each(|&c| below_starts[c as usize + 1] += 1);
+    /// The sides of the rim but the one that closes it.
+    fn new(rim: &Rim<'_>) -> Self {
+        let n = rim.points.len();
+        let mut table =
+            Table { cells: Vec::new(), above: vec![Vec::new(); n], below: vec![Vec::new(); n] };
+        for a in 0..n as u32 - 1 {
+            table.add(a, a + 1, Cell::side(rim.normals[a as usize]));
         }
-        for c in 0..n {
-            below_starts[c + 1] += below_starts[c];
-        }
-        let mut places = below_starts.clone();
-        let mut below = vec![(0, 0); ends.len()];
-        let mut cells = vec![Cell::IMPOSSIBLE; ends.len()];
-        for a in 0..n {
-            for i in starts[a]..starts[a + 1] {
-                let c = ends[i] as usize;
-                below[places[c]] = (a as u32, i as u32);
-                places[c] += 1;
-                if c == a + 1 {
-                    cells[i] = Cell::side(rim.normals[a]);
-                }
-            }
-        }
-        Table { starts, ends, cells, below_starts, below }
+        table
     }
 
-    /// The line from a to c, if there is one.
-    fn line(&self, a: usize, c: u32) -> Option<usize> {
-        let list = &self.ends[self.starts[a]..self.starts[a + 1]];
-        list.binary_search(&c).ok().map(|i| self.starts[a] + i)
+    /// Takes a line not shorter along the rim than those before.
+    fn add(&mut self, a: u32, c: u32, cell: Cell) {
+        let place = self.cells.len() as u32;
+        self.above[a as usize].push((c, cell.bend, place));
+        self.below[c as usize].push((a, cell.bend, place));
+        self.cells.push(cell);
+    }
+
+    /// The best triangle at a line, among the corners that have lines to both of its ends.
+    fn best_apex(&self, points: &[DVec3], [a, c]: [u32; 2], limit: f64, beyond: DVec3) -> Cell {
+        let mut best = Cell { bend: limit, ..Cell::IMPOSSIBLE };
+        // Both lists ascend: their common corners are found in one pass.
+        let mut below = self.below[c as usize].iter().rev();
+        let Some(mut other) = below.next() else { return Cell::IMPOSSIBLE };
+        'firsts: for &(b, bend, first) in &self.above[a as usize] {
+            while other.0 < b {
+                let Some(next) = below.next() else { break 'firsts };
+                other = next;
+            }
+            if other.0 == b && bend <= best.bend && other.1 <= best.bend {
+                let parts = [&self.cells[first as usize], &self.cells[other.2 as usize]];
+                best.offer([a, b, c].map(|i| points[i as usize]), parts, b, beyond);
+            }
+        }
+        if best.apex == u32::MAX { Cell::IMPOSSIBLE } else { best }
+    }
+
+    fn cell(&self, a: u32, c: u32) -> Option<&Cell> {
+        let list = &self.above[a as usize];
+        let place = list.binary_search_by_key(&c, |line| line.0).ok()?;
+        Some(&self.cells[list[place].2 as usize])
     }
 }
 
-/// The recurrence over some lines.
+/// The recurrence over some lines; `None` if nothing bends less than `limit` or as much.
 fn solve(
     rim: &Rim<'_>,
     lines: &[Vec<u32>],
+    limit: f64,
     progress: Progress<'_>,
 ) -> Result<Option<Chosen>, Error> {
     /// Lines between two reports.
     const STEP: usize = 1 << 15;
-    let (n, points) = (lines.len(), rim.points);
-    let mut table = Table::new(rim, lines);
+    let n = lines.len();
     // Shorter ones first: a line needs those within it.
-    let mut order: Vec<(u32, u32)> = Vec::with_capacity(table.ends.len());
-    for a in 0..n {
-        let longer =
-            (table.starts[a]..table.starts[a + 1]).filter(|&i| table.ends[i] as usize > a + 1);
-        order.extend(longer.map(|i| (a as u32, i as u32)));
+    let mut order: Vec<[u32; 2]> = Vec::with_capacity(lines.iter().map(Vec::len).sum());
+    for (a, list) in lines.iter().enumerate() {
+        let a = a as u32;
+        order.extend(list.iter().filter(|&&c| c > a + 1).map(|&c| [a, c]));
     }
-    order.sort_by_key(|&(a, i)| table.ends[i as usize] - a);
-    for (done, &(a, i)) in order.iter().enumerate() {
+    order.sort_by_key(|[a, c]| c - a);
+    let mut table = Table::new(rim);
+    for (done, &[a, c]) in order.iter().enumerate() {
         if done.is_multiple_of(STEP) {
             progress.report(done as f64 / order.len() as f64)?;
         }
-        let (a, i) = (a as usize, i as usize);
-        let c = table.ends[i] as usize;
-        let beyond = if a == 0 && c == n - 1 { rim.normals[n - 1] } else { DVec3::ZERO };
-        let mut best = Cell::IMPOSSIBLE;
-        // Both lists ascend: their common corners are found in one pass.
-        let below = &table.below[table.below_starts[c]..table.below_starts[c + 1]];
-        let mut below = below[below.partition_point(|&(b, _)| b as usize <= a)..].iter().peekable();
-        for first in table.starts[a]..i {
-            let b = table.ends[first];
-            while below.next_if(|&&(other, _)| other < b).is_some() {}
-            let Some(&(other, second)) = below.peek().copied() else { break };
-            if other == b {
-                let parts = [&table.cells[first], &table.cells[second as usize]];
-                best.offer([points[a], points[b as usize], points[c]], parts, b, beyond);
-            }
+        let closes = a == 0 && c as usize == n - 1;
+        let beyond = if closes { rim.normals[n - 1] } else { DVec3::ZERO };
+        let best = table.best_apex(rim.points, [a, c], limit, beyond);
+        if best.apex != u32::MAX {
+            table.add(a, c, best);
         }
-        table.cells[i] = best;
     }
-    let Some(whole) = table.line(0, n as u32 - 1) else { return Ok(None) };
-    let cell = table.cells[whole];
-    if cell.apex == u32::MAX {
-        return Ok(None);
-    }
+    let Some(&whole) = table.cell(0, n as u32 - 1) else { return Ok(None) };
     let mut triangles = Vec::with_capacity(n - 2);
     let mut stack = vec![(0, n as u32 - 1)];
     while let Some((a, c)) = stack.pop() {
         if c - a < 2 {
             continue;
         }
-        let Some(i) = table.line(a as usize, c) else { return Ok(None) };
-        let b = table.cells[i].apex;
+        let Some(&Cell { apex: b, .. }) = table.cell(a, c) else { return Ok(None) };
         triangles.push([a, b, c]);
         stack.extend([(b, c), (a, b)]);
     }
-    Ok(Some((triangles, cell)))
+    Ok(Some((triangles, whole)))
 }
