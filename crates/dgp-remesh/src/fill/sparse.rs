@@ -119,7 +119,11 @@ fn candidates(
         let count = n.div_ceil(step);
         let is_last = count <= 2 * scale.coarsest;
         if is_last {
-            (0..n).for_each(|a| (0..count).for_each(|k| join(a, k * step)));
+            for a in 0..n {
+                for k in 0..count {
+                    join(a, k * step);
+                }
+            }
             break;
         }
         let points: Vec<DVec3> = rim.points.iter().step_by(step).copied().collect();

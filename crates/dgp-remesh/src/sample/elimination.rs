@@ -177,7 +177,9 @@ fn neighbors(points: &[DVec3], reach: f64, progress: Progress<'_>) -> Result<Nei
         return Ok(nearest_few(&tree, points, reach));
     }
     let mut grid = Grid::new(reach * (1.0 + f64::EPSILON.sqrt()));
-    points.iter().for_each(|&p| grid.add(p));
+    for &p in points {
+        grid.add(p);
+    }
     let (mut starts, mut list) = (vec![0], Vec::new());
     for first in (0..points.len()).step_by(STEP) {
         progress.report(first as f64 / points.len() as f64)?;

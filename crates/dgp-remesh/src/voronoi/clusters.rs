@@ -93,7 +93,9 @@ impl<'a> Clusters<'a> {
             .filter(|&v| self.rings.neighbors(v).iter().any(|&w| self.label(w) != self.label(v)))
             .collect();
         let mut is_waiting = vec![false; self.labels.len()];
-        waiting.iter().for_each(|v| is_waiting[v.index()] = true);
+        for v in &waiting {
+            is_waiting[v.index()] = true;
+        }
         let (mut looks, mut moves) = (0_usize, 0);
         let mut around = Vec::new();
         while let Some(v) = waiting.pop_front() {

@@ -51,7 +51,9 @@ fn chi_square(mesh: &Mesh, samples: &[SurfaceSample]) -> f64 {
     let areas = face_areas(mesh);
     let whole = area(mesh);
     let mut counts = vec![0.0; mesh.face_count()];
-    samples.iter().for_each(|sample| counts[sample.face.index()] += 1.0);
+    for sample in samples {
+        counts[sample.face.index()] += 1.0;
+    }
     let expected = |f: usize| areas[FaceId::new(f)] / whole * samples.len() as f64;
     let sum: f64 = counts
         .iter()
@@ -97,7 +99,9 @@ fn strata_have_one_point_each() {
         assert_eq!(samples.len(), count);
         are_on(&mesh, &samples);
         let mut counts = vec![0.0; mesh.face_count()];
-        samples.iter().for_each(|sample| counts[sample.face.index()] += 1.0);
+        for sample in samples {
+            counts[sample.face.index()] += 1.0;
+        }
         let expected = |f: usize| areas[FaceId::new(f)] / area(&mesh) * count as f64;
         let most = (0..counts.len()).map(|f| (counts[f] - expected(f)).abs()).fold(0.0, f64::max);
         assert!(most < 2.0, "{count}: {most}");
