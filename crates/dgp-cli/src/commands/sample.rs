@@ -1,6 +1,6 @@
 //! `dgp sample`: points on a surface.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{fmt::Write, path::PathBuf, process::ExitCode};
 
 use clap::{Args, ValueEnum};
 use dgp::{
@@ -122,7 +122,7 @@ impl Sample {
             samples.len()
         );
         if let Some(distance) = report["least_distance"].as_f64() {
-            summary.push_str(&format!(", at least {distance:.6e} apart"));
+            let _ = write!(summary, ", at least {distance:.6e} apart");
         }
         session.finish(&summary, &report)?;
         Ok(ExitCode::SUCCESS)
