@@ -3,6 +3,7 @@
 
 // Jets are fitted by Eigen.
 #define CGAL_EIGEN3_ENABLED
+#include "holes.hpp"
 #include "mending.hpp"
 #include "spatial.hpp"
 
@@ -211,12 +212,13 @@ void repair(Report& report, const Raw& raw, const Call& call) {
     counts(report, mesh);
 }
 
-void write_mesh_raw(const Mesh& mesh, const std::string& path) {
+template <class AnyMesh>
+void write_mesh_raw(const AnyMesh& mesh, const std::string& path) {
     Raw out;
     std::vector<uint32_t> number(mesh.num_vertices());
     for (const auto v : mesh.vertices()) {
         number[v] = uint32_t(out.points.size());
-        const Point& p = mesh.point(v);
+        const auto& p = mesh.point(v);
         out.points.push_back({p.x(), p.y(), p.z()});
     }
     out.starts.push_back(0);
@@ -399,6 +401,7 @@ int main(int count, char** arguments) {
             else if (call.operation == "write-binary") write(report, raw, call, true);
             else if (spatial::perform(report, raw, call)) {}
             else if (mending::perform(report, raw, call)) {}
+            else if (holes::perform(report, raw, call, [&](const auto& mesh) { write_mesh_raw(mesh, call.out + ".raw"); })) {}
             else throw std::runtime_error("CGAL's driver has no operation " + call.operation);
         }
         report.print();

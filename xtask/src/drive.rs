@@ -2,6 +2,7 @@
 //! time and memory of peers and of us are measured alike.
 
 mod decimation;
+mod holes;
 mod spatial;
 pub(crate) mod subdivision;
 
@@ -136,6 +137,7 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
         "subdivide" | "plan-refine" | "plan" | "refine" | "stencils" => {
             subdivision::perform(call, report)
         }
+        operation if holes::OPERATIONS.contains(&operation) => holes::perform(call, report),
         operation if spatial::OPERATIONS.contains(&operation) => spatial::perform(call, report),
         "read" => time(report, call.repeat, || built(&dgp_io::read(&call.input)?.set)),
         "parse" => time(report, call.repeat, || Ok(dgp_io::read(&call.input)?)),

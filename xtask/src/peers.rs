@@ -240,7 +240,7 @@ fn compile(name: &str, folder: &Path, arguments: &[String]) -> Outcome<PathBuf> 
     let source = sources.join(format!("{name}.cpp"));
     let mut hasher = DefaultHasher::new();
     fs::read(&source)?.hash(&mut hasher);
-    for header in ["protocol.hpp", "mending.hpp", "spatial.hpp"] {
+    for header in ["protocol.hpp", "holes.hpp", "mending.hpp", "spatial.hpp"] {
         fs::read(sources.join(header))?.hash(&mut hasher);
     }
     (FLAGS, arguments).hash(&mut hasher);

@@ -34,6 +34,8 @@ fn main() -> ExitCode {
         Command::Stencils(command) => command.run(&common),
         Command::Decimate(command) => command.run(&common),
         Command::Fill(command) => command.run(&common),
+        Command::Voronoi(command) => command.run(&common),
+        Command::Sample(command) => command.run(&common),
         Command::Progressive(command) => command.run(&common),
         Command::Edit(command) => command.run(&common),
         Command::Geodesic(command) => command.run(&common),

@@ -40,6 +40,10 @@ pub enum Error {
         vertex: VertexId,
     },
 
+    /// There is no surface between the lines.
+    #[error("the faces have no area together; check the coordinates, or repair the mesh first")]
+    NoArea,
+
     /// A target or an option has a value outside its range.
     #[error("`{name}` is {value}, but must be {expected}")]
     InvalidOption {

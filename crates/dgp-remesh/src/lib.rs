@@ -7,6 +7,8 @@
 //! | all levels of detail of a mesh, exactly | [`ProgressiveMesh`], [`ProgressiveStream`], [`Geomorph`] |
 //! | holes closed, smoothly | [`fill_holes`], [`FillOptions`] |
 //! | surfaces mended: slivers, T-junctions, self-intersections | [`repair_surface`], [`remove_self_intersections`], [`remove_slivers`], [`stitch_rims`] |
+//! | points on a surface, at random or evenly | [`sample_uniform`], [`sample_stratified`], [`sample_poisson_disk`], [`sample_blue_noise`] |
+//! | a new triangulation of evenly spread vertices | [`voronoi_remesh`], [`VoronoiOptions`] |
 //! | quadric error metrics | [`Quadric`] |
 //!
 //! ```
@@ -28,6 +30,8 @@ mod fill;
 mod progressive;
 mod quadric;
 mod repair;
+mod sample;
+mod voronoi;
 
 pub use decimate::{
     Boundary, CollapseCost, CurvatureCost, DecimationOptions, DecimationReport, LengthCost, Memory,
@@ -44,3 +48,9 @@ pub use repair::{
     cap_faces, drop_small_components, hidden_fronts, needle_faces, remove_self_intersections,
     remove_slivers, repair_surface, stitch_rims,
 };
+pub use sample::{
+    BlueNoiseOptions, BlueNoiseReport, MAX_SAMPLES, PoissonOptions, PoissonReport, SampleNormal,
+    SurfaceSample, sample_attributes, sample_blue_noise, sample_normals, sample_poisson_disk,
+    sample_stratified, sample_uniform,
+};
+pub use voronoi::{VoronoiOptions, VoronoiPlacement, VoronoiReport, voronoi_remesh};

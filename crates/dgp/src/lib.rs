@@ -18,7 +18,7 @@
 //! | remove noise, let heat or curvature flow | [`laplace::smooth`], [`laplace::flow`] |
 //! | know the waves of a shape, cut, compress, match it | [`laplace::spectral`] |
 //! | refine cages into smooth surfaces, with creases | [`subdiv`] |
-//! | have fewer faces, or levels of detail that stream | [`remesh`] |
+//! | have fewer faces, levels of detail that stream, no holes, evenly spread points or vertices | [`remesh`] |
 //! | lay surfaces out in the plane | [`param`] |
 //! | solve sparse systems, find eigenpairs | [`sparse`] |
 //! | draw pictures, plot curves | [`view`] |

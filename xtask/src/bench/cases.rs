@@ -43,6 +43,8 @@ pub(super) enum Data {
     Cage(Cage),
     /// A raw mesh with faces turned over.
     Soup,
+    /// A raw mesh with a hole.
+    Holed,
     /// A file of this name.
     File(&'static str),
     /// A raw mesh, and the name of a file to write.
@@ -155,6 +157,7 @@ pub(super) fn all() -> Vec<Case> {
     files(&mut cases);
     spatial(&mut cases);
     subdivision(&mut cases);
+    holes(&mut cases);
     cases
 }
 
@@ -261,5 +264,16 @@ fn subdivision(cases: &mut Vec<Case>) {
             ],
             ..case(stencils, "positions again by a table that is there", scheme, cage, "stencils")
         });
+    }
+}
+
+/// Holes filled.
+fn holes(cases: &mut Vec<Case>) {
+    for (name, what) in [
+        ("fill-cover", "a hole filled with triangles between the corners of its rim"),
+        ("fill-refined", "a hole filled with triangles as small as those around"),
+        ("fill-fair", "a hole filled with a smooth surface"),
+    ] {
+        cases.push(Case { openmesh: None, data: Data::Holed, ..case(name, what, name) });
     }
 }

@@ -9,7 +9,7 @@ use dgp_io::{Document, Encoding, WriteOptions};
 use dgp_mesh::{FaceId, IndexedFaceSet, Progress, shapes};
 
 use super::{Effort, cases::Cage};
-use crate::{raw, shell::Outcome};
+use crate::{golden::holes::cup, raw, shell::Outcome};
 
 /// A mesh on disk.
 pub(super) struct Input {
@@ -31,6 +31,8 @@ pub(super) enum Purpose {
     Any,
     /// The solvers, whose work depends on the handles.
     Solvers,
+    /// To have their holes filled.
+    Holes,
     /// To be refined so often.
     Refinement(Cage, usize),
     /// Decimation only.
@@ -104,7 +106,28 @@ pub(super) fn prepare(effort: Effort, folder: &Path) -> Outcome<Vec<Input>> {
         purpose: Purpose::Solvers,
     });
     cages(effort, folder, &mut inputs)?;
+    holed(effort, folder, &mut inputs)?;
     Ok(inputs)
+}
+
+/// Cups whose rims have so many corners.
+fn holed(effort: Effort, folder: &Path, inputs: &mut Vec<Input>) -> Outcome<()> {
+    let sizes: &[usize] = if effort == Effort::Quick { &[100] } else { &[100, 300, 1000, 3000] };
+    for &corners in sizes {
+        let set = cup(corners)?;
+        let triangles = set.face_count();
+        let raw = folder.join(format!("cup-{corners}.raw"));
+        raw::write(&raw, &set)?;
+        inputs.push(Input {
+            name: format!("rim of {corners}"),
+            triangles,
+            soup: raw.clone(),
+            raw,
+            files: None,
+            purpose: Purpose::Holes,
+        });
+    }
+    Ok(())
 }
 
 /// Cages to be refined to a million faces and to several: few levels of many faces, many of few. The

@@ -56,6 +56,8 @@ pub(super) fn case(
     let (is_meant, levels) = match (input.purpose, case.data) {
         (Purpose::Refinement(cage, levels), Data::Cage(wanted)) => (cage == wanted, Some(levels)),
         (Purpose::Refinement(..) | Purpose::Decimation, _) | (_, Data::Cage(_)) => (false, None),
+        (Purpose::Holes, data) => (matches!(data, Data::Holed), None),
+        (_, Data::Holed) => (false, None),
         (Purpose::Solvers, _) => (case.handles, None),
         (Purpose::Any, _) => (true, None),
     };
@@ -64,7 +66,7 @@ pub(super) fn case(
     }
     let (path, out) = match (case.data, &input.files) {
         (Data::Soup, _) => (input.soup.clone(), None),
-        (Data::Raw | Data::Cage(_), _) => (input.raw.clone(), None),
+        (Data::Raw | Data::Cage(_) | Data::Holed, _) => (input.raw.clone(), None),
         (Data::File(name), Some(files)) => (files.join(name), None),
         (Data::Output(name), Some(_)) => (input.raw.clone(), Some(folder.join(name))),
         (_, None) => return None,

@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 58] = [
+pub(crate) const QUANTITIES: [(&str, &str); 60] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -75,6 +75,8 @@ pub(crate) const QUANTITIES: [(&str, &str); 58] = [
     ("hausdorff", "intervals overlap"),
     ("decimated_mean", "ours at most 1.05 × theirs"),
     ("decimated_largest", "ours at most 1.25 × theirs"),
+    ("hole_weight", "not larger by 1e-6 rad, or as bent and larger by 1e-9"),
+    ("patch_energy", "not larger than 1.05 of theirs"),
 ];
 
 /// How one quantity of one input compares.

@@ -8,6 +8,7 @@ mod compare;
 mod decimated;
 mod estimates;
 mod facts;
+pub(crate) mod holes;
 mod inputs;
 mod mending;
 mod refined;
@@ -54,6 +55,13 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             table.print();
             return table.verdict();
         }
+        [option] if option == "--holes" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            holes::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--decimated" => {
             let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
             let mut table = Table::default();
@@ -87,6 +95,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     spatial::compare(&peers, &folder, &mut table)?;
     decimated::compare(&peers, &folder, &mut table)?;
     mending::compare(&peers, &folder, &mut table)?;
+    holes::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

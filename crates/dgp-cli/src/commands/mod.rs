@@ -26,6 +26,7 @@ mod partition;
 mod progressive;
 mod render;
 mod repair;
+mod sample;
 mod scalars;
 mod shape;
 mod smooth;
@@ -33,6 +34,7 @@ mod solve;
 mod spectrum;
 mod stencils;
 mod subdivide;
+mod voronoi;
 
 use std::path::Path;
 
@@ -67,6 +69,10 @@ pub(crate) enum Command {
     Progressive(progressive::Progressive),
     /// Lay a surface out in the plane, and say what that distorts
     Param(param::Param),
+    /// Spread vertices evenly over a surface: centroidal Voronoi remeshing
+    Voronoi(voronoi::Voronoi),
+    /// Points on a surface, at random, in strata, or at a distance from each other
+    Sample(sample::Sample),
     /// Flip, split, collapse, add and remove single elements
     Edit(edit::Edit),
     /// Distances from vertices along edges, and the shortest path between two

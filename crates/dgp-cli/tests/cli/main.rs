@@ -8,6 +8,7 @@ mod folder;
 mod layouts;
 mod operators;
 mod repairing;
+mod sampling;
 mod spectra;
 mod subdivision;
 mod subdivision_tables;

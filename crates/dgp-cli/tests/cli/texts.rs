@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 29] = [
+const COMMANDS: [&str; 31] = [
     "info",
     "check",
     "convert",
@@ -15,6 +15,8 @@ const COMMANDS: [&str; 29] = [
     "progressive",
     "fill",
     "param",
+    "voronoi",
+    "sample",
     "edit",
     "geodesic",
     "curvature",

@@ -8,22 +8,27 @@
 //! The smaller of two weights has the smaller α, or with equal α the smaller A. Neighbors are the triangles that were chosen at the sides a b and b c, and on the rim the faces outside.
 //!
 //! - Input: the points of the rim, in order.
-//! - Cost: O(n³) time, O(n²) memory for n ≤ 1000; beyond, rims are divided: see [`Rim::triangulate`].
-//! - Guarantees: the minimum of the recurrence, which need not be that over all triangulations: the bend at
-//!   a c depends on what is chosen on its other side; same bits for any number of threads.
+//! - Cost: O(n³) time, O(n²) memory for up to [`WHOLE`] corners; longer rims: see `sparse.rs`.
+//! - Guarantees: up to there the minimum of the recurrence, which need not be that over all triangulations: the
+//!   bend at a c depends on what is chosen on its other side; same bits for any number of threads.
 //! - Reference: Barequet and Sharir, "Filling gaps in the boundary of a polyhedron", Computer Aided
 //!   Geometric Design 12, 1995; Liepa, "Filling holes in meshes", Symposium on Geometry Processing, 2003.
-//! - Departs from it: triangles without area count as folded; candidates that cannot be better are left out before their triangle is looked at.
+//! - Departs from it: triangles without area count as folded; candidates that cannot be better than others, or than what
+//!   a few lines give, are left out before their triangle is looked at, several at a time.
 
 use dgp_mesh::{DVec3, Progress, parallel};
 
+use super::sparse;
 use crate::Error;
 
-/// Rims of more sides are divided.
-const WHOLE: usize = 1000;
+/// For longer rims a limit is worth its time.
+const SHORT: usize = 64;
 
-/// Into how many parts, about.
-const PARTS: usize = 400;
+/// For rims of more corners only some lines between corners are looked at.
+pub(super) const WHOLE: usize = 1200;
+
+/// Where some lines are not enough all are tried, up to so many corners.
+const PATIENCE: usize = 2000;
 
 /// Levels with fewer candidates are not shared among threads.
 const SHARED: usize = 20_000;
@@ -50,183 +55,46 @@ pub(super) struct Triangulation {
 const FOLDED: f64 = 2.0;
 
 /// Triangles of corners of the rim, and what is known of all of them.
-type Chosen = (Vec<[u32; 3]>, Cell);
+pub(super) type Chosen = (Vec<[u32; 3]>, Cell);
 
 /// What is known of the part of the rim from one corner to another.
 #[derive(Clone, Copy)]
-struct Cell {
+pub(super) struct Cell {
     /// The largest 1 − cos of the angle between neighbors; infinite where the corners cannot be joined.
-    bend: f64,
-    area: f64,
+    pub(super) bend: f64,
+    pub(super) area: f64,
     /// Of the triangle at the line between the corners.
-    normal: DVec3,
+    pub(super) normal: DVec3,
     /// Its third corner.
-    apex: u32,
+    pub(super) apex: u32,
 }
 
 impl Cell {
-    const IMPOSSIBLE: Cell =
+    pub(super) const IMPOSSIBLE: Cell =
         Cell { bend: f64::INFINITY, area: f64::INFINITY, normal: DVec3::ZERO, apex: u32::MAX };
 
-    fn side(normal: DVec3) -> Cell {
+    pub(super) fn side(normal: DVec3) -> Cell {
         Cell { bend: 0.0, area: 0.0, normal, apex: u32::MAX }
     }
 
-    fn is_better_than(&self, other: &Cell) -> bool {
+    pub(super) fn is_better_than(&self, other: &Cell) -> bool {
         self.bend < other.bend || (self.bend == other.bend && self.area < other.area)
     }
-}
 
-impl Rim<'_> {
-    /// The best triangulation; `None` where edges that are there already leave none.
-    ///
-    /// Of a long rim the best triangulations of short parts are found first, and then the best of what
-    /// is left.
-    pub(super) fn triangulate(
-        &self,
-        progress: Progress<'_>,
-    ) -> Result<Option<Triangulation>, Error> {
-        let n = self.points.len();
-        if n <= WHOLE {
-            let all: Vec<u32> = (0..n as u32).collect();
-            let normals = self.normals.to_vec();
-            return Ok(self.best(&all, &normals, progress)?.map(|(triangles, cell)| {
-                Triangulation { triangles, angle: angle(cell.bend), area: cell.area }
-            }));
-        }
-        let Some((corners, ends)) = self.parts(n.div_ceil(PARTS)) else { return Ok(None) };
-        let mut triangles = Vec::with_capacity(n - 2);
-        let (mut bend, mut area) = (0.0_f64, 0.0);
-        let mut normals = Vec::with_capacity(corners.len());
-        for (k, (&start, &end)) in corners.iter().zip(&ends).enumerate() {
-            progress.part(0.0, 0.5).report(k as f64 / corners.len() as f64)?;
-            let part: Vec<u32> = (start..=end).map(|i| i % n as u32).collect();
-            let mut outside: Vec<DVec3> =
-                part[..part.len() - 1].iter().map(|&i| self.normals[i as usize]).collect();
-            if part.len() == 2 {
-                normals.push(outside[0]);
-                continue;
-            }
-            outside.push(DVec3::ZERO);
-            let Some((found, cell)) = self.best(&part, &outside, Progress::NONE)? else {
-                return Ok(None);
-            };
-            triangles.extend(found);
-            bend = bend.max(cell.bend);
-            area += cell.area;
-            normals.push(cell.normal);
-        }
-        let best = self.best(&corners, &normals, progress.part(0.5, 1.0))?;
-        Ok(best.map(|(found, cell)| {
-            triangles.extend(found);
-            Triangulation { triangles, angle: angle(bend.max(cell.bend)), area: area + cell.area }
-        }))
-    }
-
-    /// Corners about `step` apart that can be joined, from 0 on, and for each the end of its part.
-    fn parts(&self, step: usize) -> Option<(Vec<u32>, Vec<u32>)> {
-        let n = self.points.len() as u32;
-        let mut corners = vec![0_u32];
-        loop {
-            let start = corners[corners.len() - 1];
-            let free = |end: &u32| !self.are_joined(start, *end);
-            match (start + step as u32..n - 1).find(free) {
-                Some(end) => corners.push(end),
-                None => break,
-            }
-        }
-        // The last part ends where the first starts.
-        while self.are_joined(corners[corners.len() - 1], 0) {
-            corners.pop();
-        }
-        let ends = corners.iter().skip(1).copied().chain([n]).collect();
-        (corners.len() > 2).then_some((corners, ends))
-    }
-
-    fn are_joined(&self, a: u32, b: u32) -> bool {
-        self.joined[a as usize].binary_search(&b).is_ok()
-    }
-
-    /// The best triangulation of some corners in order, with a normal beyond each side, the last that of
-    /// the side which closes; `None` where there is none.
-    fn best(
-        &self,
-        corners: &[u32],
-        normals: &[DVec3],
-        progress: Progress<'_>,
-    ) -> Result<Option<Chosen>, Error> {
-        let n = corners.len();
-        let points: Vec<DVec3> = corners.iter().map(|&i| self.points[i as usize]).collect();
-        // What is known of a and c, by a and by c: both are read one after the other.
-        let mut rows = vec![Cell::IMPOSSIBLE; n * n];
-        let mut columns = vec![Cell::IMPOSSIBLE; n * n];
-        for i in 0..n - 1 {
-            rows[i * n + i + 1] = Cell::side(normals[i]);
-            columns[(i + 1) * n + i] = rows[i * n + i + 1];
-        }
-        for length in 2..n {
-            progress.report(length as f64 / n as f64)?;
-            let count = n - length;
-            let block = if count * length < SHARED { count } else { count.div_ceil(16) };
-            let level = parallel::map_blocks(count, block, |range| {
-                let found = range.map(|a| {
-                    let c = a + length;
-                    let closes = length + 1 == n;
-                    if !closes && self.are_joined(corners[a], corners[c]) {
-                        return Cell::IMPOSSIBLE;
-                    }
-                    let beyond = if closes { normals[n - 1] } else { DVec3::ZERO };
-                    best_apex(
-                        &points,
-                        a,
-                        c,
-                        &rows[a * n..(a + 1) * n],
-                        &columns[c * n..(c + 1) * n],
-                        beyond,
-                    )
-                });
-                found.collect::<Vec<Cell>>()
-            });
-            for (a, cell) in level.into_iter().flatten().enumerate() {
-                rows[a * n + a + length] = cell;
-                columns[(a + length) * n + a] = cell;
-            }
-        }
-        let whole = rows[n - 1];
-        if whole.apex == u32::MAX {
-            return Ok(None);
-        }
-        let mut triangles = Vec::with_capacity(n - 2);
-        let mut stack = vec![(0, n - 1)];
-        while let Some((a, c)) = stack.pop() {
-            if c - a < 2 {
-                continue;
-            }
-            let b = rows[a * n + c].apex as usize;
-            triangles.push([corners[a], corners[b], corners[c]]);
-            stack.extend([(b, c), (a, b)]);
-        }
-        Ok(Some((triangles, whole)))
-    }
-}
-
-/// The best triangle at the line from a to c, given what is known of a and each b and of each b and c.
-fn best_apex(
-    points: &[DVec3],
-    a: usize,
-    c: usize,
-    row: &[Cell],
-    column: &[Cell],
-    beyond: DVec3,
-) -> Cell {
-    let mut best = Cell::IMPOSSIBLE;
-    for b in a + 1..c {
-        let (first, second) = (&row[b], &column[b]);
+    /// Takes the triangle of `points` at b, if it is better, given what is known of both sides at its apex.
+    #[inline]
+    pub(super) fn offer(
+        &mut self,
+        [a, b, c]: [DVec3; 3],
+        [first, second]: [&Cell; 2],
+        apex: u32,
+        beyond: DVec3,
+    ) {
         let below = first.bend.max(second.bend);
-        if below > best.bend || !below.is_finite() {
-            continue;
+        if below > self.bend || !below.is_finite() {
+            return;
         }
-        let cross = (points[b] - points[a]).cross(points[c] - points[b]);
+        let cross = (b - a).cross(c - b);
         let length = cross.length();
         // What lies beyond a triangle without area could look anywhere: it counts as folded.
         let (normal, bend) = if length > 0.0 {
@@ -237,16 +105,175 @@ fn best_apex(
             (DVec3::ZERO, FOLDED)
         };
         let area = first.area + second.area + 0.5 * length;
-        let cell = Cell { bend, area, normal, apex: b as u32 };
-        if cell.is_better_than(&best) {
-            best = cell;
+        let cell = Cell { bend, area, normal, apex };
+        if cell.is_better_than(self) {
+            *self = cell;
         }
     }
-    best
+}
+
+impl Rim<'_> {
+    /// The best triangulation, or nearly; `None` where edges that are there already leave none.
+    pub(super) fn triangulate(
+        &self,
+        progress: Progress<'_>,
+    ) -> Result<Option<Triangulation>, Error> {
+        let n = self.points.len();
+        let chosen = if n <= SHORT {
+            self.best(f64::INFINITY, progress)?
+        } else {
+            // What a few lines give tells how much none of the parts may bend.
+            let few = sparse::best(self, n > WHOLE, progress.part(0.0, 0.3))?;
+            let limit = few.as_ref().map_or(f64::INFINITY, |(_, cell)| cell.bend);
+            let all = match few {
+                Some(_) if n > WHOLE => None,
+                _ if n > PATIENCE => None,
+                _ => self.best(limit, progress.part(0.3, 1.0))?,
+            };
+            [few, all]
+                .into_iter()
+                .flatten()
+                .reduce(|x, y| if y.1.is_better_than(&x.1) { y } else { x })
+        };
+        Ok(chosen.map(|(triangles, cell)| Triangulation {
+            triangles,
+            angle: angle(cell.bend),
+            area: cell.area,
+        }))
+    }
+
+    pub(super) fn are_joined(&self, a: u32, b: u32) -> bool {
+        self.joined[a as usize].binary_search(&b).is_ok()
+    }
+
+    /// The best triangulation over all lines, if it bends less than `limit` or as much; `None` where there is none.
+    pub(super) fn best(&self, limit: f64, progress: Progress<'_>) -> Result<Option<Chosen>, Error> {
+        let n = self.points.len();
+        let mut table = Table::new(self);
+        for length in 2..n {
+            progress.report((length as f64 / n as f64).powi(2))?;
+            let count = n - length;
+            let block = if count * length < SHARED { count } else { count.div_ceil(16) };
+            let level = parallel::map_blocks(count, block, |range| {
+                let cell = |a: usize| {
+                    let c = a + length;
+                    let closes = length + 1 == n;
+                    if !closes && self.are_joined(a as u32, c as u32) {
+                        return Cell::IMPOSSIBLE;
+                    }
+                    let beyond = if closes { self.normals[n - 1] } else { DVec3::ZERO };
+                    table.best_apex(self.points, [a, c], limit, beyond)
+                };
+                range.map(cell).collect::<Vec<Cell>>()
+            });
+            for (a, cell) in level.into_iter().flatten().enumerate() {
+                table.set(a, a + length, &cell);
+            }
+        }
+        let whole = table.cell(0, n - 1);
+        if whole.apex == u32::MAX {
+            return Ok(None);
+        }
+        let mut triangles = Vec::with_capacity(n - 2);
+        let mut stack = vec![(0, n - 1)];
+        while let Some((a, c)) = stack.pop() {
+            if c - a < 2 {
+                continue;
+            }
+            let b = table.cell(a, c).apex as usize;
+            triangles.push([a as u32, b as u32, c as u32]);
+            stack.extend([(b, c), (a, b)]);
+        }
+        Ok(Some((triangles, *whole)))
+    }
+}
+
+/// What is known of a and c > a, by a and by c: both are read one after the other.
+struct Table {
+    n: usize,
+    row_bends: Vec<f64>,
+    rows: Vec<Cell>,
+    column_bends: Vec<f64>,
+    columns: Vec<Cell>,
+}
+
+impl Table {
+    fn new(rim: &Rim<'_>) -> Self {
+        let n = rim.points.len();
+        let size = n * (n - 1) / 2;
+        let mut table = Table {
+            n,
+            row_bends: vec![f64::INFINITY; size],
+            rows: vec![Cell::IMPOSSIBLE; size],
+            column_bends: vec![f64::INFINITY; size],
+            columns: vec![Cell::IMPOSSIBLE; size],
+        };
+        for a in 0..n - 1 {
+            table.set(a, a + 1, &Cell::side(rim.normals[a]));
+        }
+        table
+    }
+
+    /// Where the row of `a` has what is known of it and a + 1.
+    fn row(&self, a: usize) -> usize {
+        a * (2 * self.n - a - 1) / 2
+    }
+
+    /// Where the column of `c` has what is known of 0 and it.
+    fn column(c: usize) -> usize {
+        c * (c - 1) / 2
+    }
+
+    fn cell(&self, a: usize, c: usize) -> &Cell {
+        &self.rows[self.row(a) + c - a - 1]
+    }
+
+    fn set(&mut self, a: usize, c: usize, cell: &Cell) {
+        let (row, column) = (self.row(a) + c - a - 1, Self::column(c) + a);
+        self.row_bends[row] = cell.bend;
+        self.rows[row] = *cell;
+        self.column_bends[column] = cell.bend;
+        self.columns[column] = *cell;
+    }
+
+    /// The best triangle at the line from a to c, given what is known of a and each b and of each b and c.
+    fn best_apex(&self, points: &[DVec3], [a, c]: [usize; 2], limit: f64, beyond: DVec3) -> Cell {
+        /// Apexes that are looked at together.
+        const FEW: usize = 16;
+        let (row, column) = (self.row(a), Self::column(c));
+        let (rows, columns) = (row..row + c - a - 1, column + a + 1..column + c);
+        let (firsts, seconds) = (&self.rows[rows.clone()], &self.columns[columns.clone()]);
+        let mut best = Cell { bend: limit, ..Cell::IMPOSSIBLE };
+        let mut offer = |k: usize| {
+            let b = a + 1 + k;
+            let parts = [&firsts[k], &seconds[k]];
+            best.offer([points[a], points[b], points[c]], parts, b as u32, beyond);
+            best.bend
+        };
+        // That of a shorter line leaves little for the others.
+        let guess = self.cell(a, c - 1).apex;
+        let mut most = if guess < c as u32 { offer(guess as usize - a - 1) } else { limit };
+        let bends = self.row_bends[rows].chunks(FEW).zip(self.column_bends[columns].chunks(FEW));
+        for (chunk, (firsts, seconds)) in bends.enumerate() {
+            // Without a branch for each, so that several are compared at a time.
+            let larger = |(x, y): (&f64, &f64)| if x > y { *x } else { *y };
+            let smaller = |x: f64, y: f64| if x < y { x } else { y };
+            let least = firsts.iter().zip(seconds).map(larger).fold(f64::INFINITY, smaller);
+            if least > most || least == f64::INFINITY {
+                continue;
+            }
+            for (k, pair) in firsts.iter().zip(seconds).enumerate() {
+                if larger(pair) <= most {
+                    most = offer(FEW * chunk + k);
+                }
+            }
+        }
+        if best.apex == u32::MAX { Cell::IMPOSSIBLE } else { best }
+    }
 }
 
 /// 1 − cos of the angle between two normals; none where one of them is zero.
-fn bend(a: DVec3, b: DVec3) -> f64 {
+pub(super) fn bend(a: DVec3, b: DVec3) -> f64 {
     if a == DVec3::ZERO || b == DVec3::ZERO { 0.0 } else { 1.0 - a.dot(b) }
 }
 

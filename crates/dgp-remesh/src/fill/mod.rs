@@ -2,13 +2,14 @@
 //!
 //! | step | what it does | file |
 //! |---|---|---|
-//! | cover | the triangulation of the rim whose faces bend least | `minimal.rs` |
+//! | cover | the triangulation of the rim whose faces bend least | `minimal.rs`, long rims: `sparse.rs` |
 //! | refine | new vertices until edges are as long as around the hole | `refine.rs` |
 //! | fair | moves them to the smoothest surface that continues what is around | `fair.rs` |
 
 mod fair;
 mod minimal;
 mod refine;
+mod sparse;
 
 use std::collections::BTreeMap;
 

@@ -232,7 +232,7 @@ fn a_cap_comes_back_round() {
 }
 
 #[test]
-fn long_rims_are_filled_in_parts() {
+fn long_flat_rims_stay_flat() {
     // A flat disk without its middle, whose rim has so many corners.
     for n in [999, 2500] {
         let mut mesh = shapes::annulus(0.5, 1.0, n, 1).unwrap();
@@ -249,6 +249,90 @@ fn long_rims_are_filled_in_parts() {
         let polygon = 0.5 * 0.25 * n as f64 * (2.0 * PI / n as f64).sin();
         assert!((hole.area - polygon).abs() < 1e-9 && (area(&mesh) - ring - polygon).abs() < 1e-9);
         assert!(hole.largest_bend < 1e-6, "{hole:?}");
+    }
+}
+
+/// The recurrence over all lines, each part once: the largest angle and the area.
+fn exhaustive(corners: &[DVec3], outside: &[DVec3]) -> (f64, f64) {
+    let n = corners.len();
+    let mut cells = vec![(0.0_f64, 0.0_f64, DVec3::ZERO); n * n];
+    for a in 0..n - 1 {
+        cells[a * n + a + 1].2 = outside[a];
+    }
+    for length in 2..n {
+        for a in 0..n - length {
+            let c = a + length;
+            let mut best = (f64::INFINITY, f64::INFINITY, DVec3::ZERO);
+            for b in a + 1..c {
+                let (first, second) = (cells[a * n + b], cells[b * n + c]);
+                let cross = (corners[b] - corners[a]).cross(corners[c] - corners[b]);
+                let normal = cross.normalize();
+                let bend = |other: DVec3| 1.0 - normal.dot(other);
+                let mut most = first.0.max(second.0);
+                most = most.max(bend(first.2)).max(bend(second.2));
+                if length == n - 1 {
+                    most = most.max(bend(outside[n - 1]));
+                }
+                let area = first.1 + second.1 + 0.5 * cross.length();
+                if most < best.0 || (most == best.0 && area < best.1) {
+                    best = (most, area, normal);
+                }
+            }
+            cells[a * n + c] = best;
+        }
+    }
+    let (bend, area, _) = cells[n - 1];
+    ((1.0 - bend).acos(), area)
+}
+
+/// A ring whose inner rim of `n` corners goes up and down, by waves and by chance.
+fn crown(n: usize, waves: f64, noise: f64, seed: u64) -> Mesh {
+    let mut mesh = shapes::annulus(0.5, 1.0, n, 1).unwrap();
+    let mut seed = seed;
+    for v in mesh.vertices().collect::<Vec<_>>() {
+        let p = mesh.position(v);
+        let angle = p.y.atan2(p.x);
+        let wave = 0.2 * (waves * angle).sin() * (1.0 + 0.5 * (2.0 * angle).cos());
+        let chance = DVec3::new(random(&mut seed), random(&mut seed), random(&mut seed));
+        mesh.set_position(v, p + wave * DVec3::Z + noise / n as f64 * chance);
+    }
+    mesh
+}
+
+/// Up to 1200 corners exactly, beyond nearly.
+#[test]
+fn few_lines_find_what_all_do() {
+    const WAVES: [(f64, f64, u64); 5] =
+        [(0.0, 0.5, 1), (2.0, 0.0, 2), (3.0, 0.3, 3), (5.0, 1.0, 4), (11.0, 0.5, 5)];
+    for (n, waves) in [(70, &WAVES[..]), (200, &WAVES[..]), (1210, &WAVES[1..2])] {
+        for &(waves, noise, seed) in waves {
+            let mut mesh = crown(n, waves, noise, seed);
+            let rims = boundary_loops(&mesh);
+            let inner = |rim: &&Vec<_>| {
+                let start: DVec3 = mesh.position(mesh.from(rim[0]));
+                start.truncate().length() < 0.75
+            };
+            let rim = rims.iter().find(inner).unwrap();
+            let corners: Vec<DVec3> = rim.iter().map(|&h| mesh.position(mesh.from(h))).collect();
+            let outside: Vec<DVec3> =
+                rim.iter().map(|&h| mesh.face_normal(mesh.face(h.twin()).unwrap())).collect();
+            let (bend, size) = exhaustive(&corners, &outside);
+            let options = FillOptions {
+                patch: Patch::Cover,
+                longest: LongestRim::Keep,
+                ..FillOptions::default()
+            };
+            let report = fill_holes(&mut mesh, &options, Progress::NONE).unwrap();
+            let hole =
+                report.holes.iter().find(|hole| hole.outcome == HoleOutcome::Filled).unwrap();
+            if n <= 1200 {
+                assert!((hole.largest_bend - bend).abs() < 1e-7, "{n} {waves}: {hole:?} {bend}");
+                assert!((hole.area - size).abs() < 1e-9, "{n} {waves}: {hole:?} {size}");
+            } else {
+                assert!(hole.largest_bend < bend + 0.1, "{n} {waves}: {hole:?} {bend}");
+                assert!(hole.area < 1.02 * size, "{n} {waves}: {hole:?} {size}");
+            }
+        }
     }
 }
 

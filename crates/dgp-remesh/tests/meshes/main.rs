@@ -7,3 +7,5 @@ mod progressive;
 mod quadrics;
 mod quick;
 mod repairing;
+mod sampling;
+mod voronoi;

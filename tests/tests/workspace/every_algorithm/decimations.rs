@@ -2,14 +2,16 @@
 
 use dgp_mesh::{EdgeSet, HalfedgeId, Mesh, Progress, VertexSet, measure::bounding_box};
 use dgp_remesh::{
-    CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost, Memory, Order, Patch,
-    Placement, ProgressiveMesh, QuadricCost, QuadricOptions, Target, decimate, decimate_quadric,
-    fill_holes, seam_edges, sharp_edges,
+    BlueNoiseOptions, CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost,
+    Memory, Order, Patch, Placement, PoissonOptions, ProgressiveMesh, QuadricCost, QuadricOptions,
+    SampleNormal, Target, VoronoiOptions, VoronoiPlacement, decimate, decimate_quadric, fill_holes,
+    sample_attributes, sample_blue_noise, sample_normals, sample_poisson_disk, sample_stratified,
+    sample_uniform, seam_edges, sharp_edges, voronoi_remesh,
 };
 
 use super::{
     outcome::Outcome,
-    table::{Algorithm, changed, mesh},
+    table::{Algorithm, changed, made, mesh, set},
 };
 
 pub(crate) fn decimations() -> Vec<Algorithm> {
@@ -55,6 +57,29 @@ pub(crate) fn decimations() -> Vec<Algorithm> {
         mesh("fill_holes", |m, p| filled(m, Patch::Cover, p)),
         mesh("fill_holes refined", |m, p| filled(m, Patch::Refined, p)),
         mesh("fill_holes fair", |m, p| filled(m, Patch::Fair, p)),
+        set("sample_uniform", |s, p| {
+            Outcome::of(&sample_uniform(s, 300, 1, p).map(|samples| {
+                let normals = sample_normals(s, &samples, SampleNormal::Smooth);
+                (sample_attributes(s, &samples), normals, samples)
+            }))
+        }),
+        set("sample_stratified", |s, p| Outcome::of(&sample_stratified(s, 300, 1, p))),
+        set("sample_blue_noise", |s, p| {
+            Outcome::of(&sample_blue_noise(s, 100, &BlueNoiseOptions::default(), p))
+        }),
+        set("sample_poisson_disk", |s, p| {
+            let size = bounding_box(s).map_or(1.0, |bounds| bounds.diagonal());
+            Outcome::of(&sample_poisson_disk(s, 0.1 * size, &PoissonOptions::default(), p))
+        }),
+        mesh("voronoi_remesh", |m, p| made(voronoi_remesh(m, 60, &VoronoiOptions::default(), p))),
+        mesh("voronoi_remesh by curvature", |m, p| {
+            let options = VoronoiOptions {
+                gradation: 1.5,
+                placement: VoronoiPlacement::Sharp,
+                ..VoronoiOptions::default()
+            };
+            made(voronoi_remesh(m, 60, &options, p))
+        }),
         mesh("sharp_edges, seam_edges", |m, _| Outcome::of(&(sharp_edges(m, 0.5), seam_edges(m)))),
     ]
 }
