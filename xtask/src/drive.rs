@@ -2,6 +2,7 @@
 //! time and memory of peers and of us are measured alike.
 
 mod decimation;
+mod remeshing;
 mod spatial;
 pub(crate) mod subdivision;
 
@@ -133,6 +134,7 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
             time(report, call.repeat, || Ok(render(&scene, &options, Progress::NONE)?))
         }
         "decimate" | "progressive" => decimation::perform(call, report),
+        "remesh" => remeshing::perform(call, report),
         "subdivide" | "plan-refine" | "plan" | "refine" | "stencils" => {
             subdivision::perform(call, report)
         }

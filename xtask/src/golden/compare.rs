@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 49] = [
+pub(crate) const QUANTITIES: [(&str, &str); 54] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -66,6 +66,11 @@ pub(crate) const QUANTITIES: [(&str, &str); 49] = [
     ("box_faces", "equal"),
     ("self_intersections", "equal"),
     ("hausdorff", "intervals overlap"),
+    ("remeshed_low_angle", "not below the peer's by more than 0.5°"),
+    ("remeshed_mean_angle", "not below the peer's by more than 0.5°"),
+    ("remeshed_regular", "not below the peer's by more than 0.01"),
+    ("remeshed_rms", "not above the peer's by more than 5 %"),
+    ("remeshed_hausdorff", "not above the peer's by more than 10 %"),
 ];
 
 /// How one quantity of one input compares.

@@ -9,6 +9,7 @@ mod estimates;
 mod facts;
 mod inputs;
 mod refined;
+mod remeshing;
 mod spatial;
 mod stored;
 mod table;
@@ -45,8 +46,15 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             table.print();
             return table.verdict();
         }
+        [option] if option == "--remeshing" => {
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            remeshing::compare(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
+        }
         [option] if option == "--regenerate" => true,
-        _ => return Err("usage: golden [--regenerate | --refined | --spatial]".into()),
+        _ => return Err("usage: golden [--regenerate | --refined | --remeshing | --spatial]".into()),
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;
@@ -67,6 +75,7 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     estimates::compare(&peers, &folder, &mut table)?;
     refined::compare(&peers, &folder, &mut table)?;
     spatial::compare(&peers, &folder, &mut table)?;
+    remeshing::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()

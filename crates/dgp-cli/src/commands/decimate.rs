@@ -112,7 +112,7 @@ pub(super) fn amount(text: &str) -> Result<Amount, String> {
     }
 }
 
-fn degrees(text: &str) -> Result<f64, String> {
+pub(super) fn degrees(text: &str) -> Result<f64, String> {
     let found = text.parse::<f64>().ok().filter(|x| (0.0..=180.0).contains(x));
     found.ok_or_else(|| format!("`{text}` is no angle from 0 to 180 degrees"))
 }
@@ -235,7 +235,7 @@ fn to_json(report: &DecimationReport) -> Value {
 }
 
 /// The mesh before and after, side by side.
-fn picture_of(meshes: [&Mesh; 2], progress: Progress<'_>) -> Result<Vec<u8>, dgp::view::Error> {
+pub(super) fn picture_of(meshes: [&Mesh; 2], progress: Progress<'_>) -> Result<Vec<u8>, dgp::view::Error> {
     use dgp::view::{Framing, Model, Panel, RenderOptions, Scene, Stroke, Style, render};
     /// More faces than this make a wireframe black.
     const WIRED: usize = 20_000;

@@ -22,6 +22,7 @@ mod laplacian;
 mod manual;
 mod partition;
 mod progressive;
+mod remesh;
 mod render;
 mod repair;
 mod scalars;
@@ -59,6 +60,8 @@ pub(crate) enum Command {
     Stencils(stencils::Stencils),
     /// Have fewer faces for the same shape
     Decimate(decimate::Decimate),
+    /// Have triangles nearly equilateral, of one size or as fine as the shape needs
+    Remesh(remesh::Remesh),
     /// Close holes: with few triangles, with small ones, or smoothly
     Fill(fill::Fill),
     /// Keep all levels of detail of a mesh in one file, or take one out

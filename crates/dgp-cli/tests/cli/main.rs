@@ -1,6 +1,7 @@
 //! The command as a user meets it: exit codes, messages, reports, pipes, files left behind.
 
 mod decimation;
+mod remeshing;
 mod distances;
 mod elements;
 mod filling;

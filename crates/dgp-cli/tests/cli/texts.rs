@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 28] = [
+const COMMANDS: [&str; 29] = [
     "info",
     "check",
     "convert",
@@ -12,6 +12,7 @@ const COMMANDS: [&str; 28] = [
     "evaluate",
     "stencils",
     "decimate",
+    "remesh",
     "progressive",
     "fill",
     "edit",

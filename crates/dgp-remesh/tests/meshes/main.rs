@@ -4,3 +4,4 @@ mod any_cost;
 mod holes;
 mod progressive;
 mod quadrics;
+mod remeshing;
