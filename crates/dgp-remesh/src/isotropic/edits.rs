@@ -104,8 +104,8 @@ impl Surface {
         Ok(count)
     }
 
-    /// Splits the edge of `h`, and returns a half-edge of each edge that is new or shorter.
-    fn split_in_middle(&mut self, h: u32, lines: &[Line]) -> Result<Option<[u32; 4]>, Error> {
+    /// Splits the edge of `h`, and returns a half-edge of each edge that is new or has other half-edges now.
+    fn split_in_middle(&mut self, h: u32, lines: &[Line]) -> Result<Option<[u32; 6]>, Error> {
         let (a, b) = (self.from(h), self.to(h));
         let [one, other] = [a, b].map(|v| *self.vertex(v));
         let near = if one.freedom == Freedom::Free { one.near } else { other.near };
@@ -129,8 +129,10 @@ impl Surface {
         }
         let t = self.twin(h);
         let m = self.split(h, position, vertex)?;
-        let across = if t == NONE { NONE } else { prev(t) };
-        Ok(Some([h, self.vertex(m).spoke, next(h), across]))
+        let half = self.vertex(m).spoke;
+        let [across, beside] =
+            if t == NONE { [NONE; 2] } else { [prev(t), prev(self.twin(half))] };
+        Ok(Some([h, half, next(h), next(half), across, beside]))
     }
 
     /// The place on `line` between two neighbors on it.

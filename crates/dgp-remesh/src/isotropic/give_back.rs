@@ -13,7 +13,7 @@ use super::{
 use crate::Error;
 
 /// How far from a vertex toward the middle of what is around it one looks for the face it continues.
-const INWARD: f64 = 0.05;
+const INWARD: f64 = 1e-9;
 
 /// The triangles as a mesh, and where its elements are in the surface.
 pub(super) struct Packed {

@@ -196,8 +196,8 @@ impl Run {
             }),
             distance: None,
         };
-        *mesh = result;
         progress.report(1.0)?;
+        *mesh = result;
         Ok(report)
     }
 }
