@@ -1,8 +1,12 @@
 //! Isotropic remeshing, five iterations, with edges of `--levels` percent of the mean length; `sharp` keeps edges that
-//! bend by more than 40 degrees.
+//! bend by more than 40 degrees. `remeshed` tells how good a result is beside the mesh `--other`, which it was made from.
 
-use dgp_mesh::{EdgeSet, Mesh, Progress, VertexSet, measure::edge_length_range};
-use dgp_remesh::{RemeshOptions, remesh_isotropic, sharp_edges};
+use dgp_mesh::{
+    EdgeSet, Mesh, Progress, VertexSet,
+    measure::edge_length_range,
+    spatial::{DeviationOptions, HausdorffOptions, TriangleTree, deviation, hausdorff},
+};
+use dgp_remesh::{RemeshOptions, remesh_isotropic, sharp_edges, triangle_quality};
 use serde_json::{Map, Value, json};
 
 use super::{Call, built, time_from};
@@ -10,6 +14,9 @@ use crate::{raw, shell::Outcome};
 
 /// Runs the operation; what `--out` names gets the result of the last run.
 pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
+    if call.operation == "remeshed" {
+        return judge(call, report);
+    }
     let input = built(&raw::read(&call.input)?)?;
     let mean = edge_length_range(&input).map_or(0.0, |lengths| lengths.mean);
     let length = mean * percent(call.levels) / 100.0;
@@ -37,6 +44,31 @@ pub(super) fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<(
         if !call.out.as_os_str().is_empty() {
             raw::write(&call.out.with_extension("raw"), &mesh.to_indexed())?;
         }
+    }
+    Ok(())
+}
+
+/// Angles in degrees, distances in units of the diagonal.
+fn judge(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
+    let mesh = built(&raw::read(&call.input)?)?;
+    let quality = triangle_quality(&mesh)?;
+    let tree = TriangleTree::new(&mesh, Progress::NONE)?;
+    let input = TriangleTree::new(&raw::read(&call.other)?, Progress::NONE)?;
+    let samples = DeviationOptions::default();
+    let there = deviation(&tree, &input, &samples, Progress::NONE)?;
+    let back = deviation(&input, &tree, &samples, Progress::NONE)?;
+    let bounds = hausdorff(&tree, &input, &HausdorffOptions::default(), Progress::NONE)?;
+    let diagonal = input.bounding_box().map_or(1.0, |bounds| bounds.diagonal());
+    for (name, value) in [
+        ("faces", mesh.face_count() as f64),
+        ("least", quality.minimum_angle.to_degrees()),
+        ("low", quality.low_angle.to_degrees()),
+        ("mean", quality.mean_minimum_angle.to_degrees()),
+        ("regular", quality.regular_share),
+        ("rms", there.rms.max(back.rms) / diagonal),
+        ("hausdorff", bounds.upper() / diagonal),
+    ] {
+        report.insert(name.into(), json!(value));
     }
     Ok(())
 }

@@ -6,11 +6,7 @@
 
 use std::{fs, path::Path};
 
-use dgp_mesh::{
-    IndexedFaceSet, Mesh, Progress, shapes,
-    spatial::{DeviationOptions, HausdorffOptions, TriangleTree, deviation, hausdorff},
-};
-use dgp_remesh::triangle_quality;
+use dgp_mesh::{IndexedFaceSet, shapes};
 
 use super::{Comparison, Table, Verdict};
 use crate::{
@@ -56,7 +52,7 @@ fn cases() -> Outcome<Vec<Case>> {
 
 /// The figures of one result.
 struct Figures {
-    faces: usize,
+    faces: f64,
     least: f64,
     low: f64,
     mean: f64,
@@ -135,25 +131,18 @@ fn figures(driver: &Driver, case: &Case, path: &Path) -> Outcome<Figures> {
     let answer = driver.call("remesh", path, &options)?;
     let times = answer["ms"].as_array().into_iter().flatten();
     let milliseconds = times.filter_map(serde_json::Value::as_f64).fold(f64::INFINITY, f64::min);
-    let set = raw::read(&result)?;
+    let other = path.to_string_lossy();
+    let found = Driver::ours()?.call("remeshed", &result, &["--other", other.as_ref()])?;
     fs::remove_file(result)?;
-    let mesh = Mesh::new(&set)?;
-    let quality = triangle_quality(&mesh)?;
-    let tree = TriangleTree::new(&mesh, Progress::NONE)?;
-    let input = TriangleTree::new(&case.set, Progress::NONE)?;
-    let samples = DeviationOptions::default();
-    let there = deviation(&tree, &input, &samples, Progress::NONE)?;
-    let back = deviation(&input, &tree, &samples, Progress::NONE)?;
-    let bounds = hausdorff(&tree, &input, &HausdorffOptions::default(), Progress::NONE)?;
-    let diagonal = input.bounding_box().map_or(1.0, |bounds| bounds.diagonal());
+    let number = |name: &str| found[name].as_f64().unwrap_or(f64::NAN);
     Ok(Figures {
-        faces: mesh.face_count(),
-        least: quality.minimum_angle.to_degrees(),
-        low: quality.low_angle.to_degrees(),
-        mean: quality.mean_minimum_angle.to_degrees(),
-        regular: quality.regular_share,
-        rms: there.rms.max(back.rms) / diagonal,
-        hausdorff: bounds.upper() / diagonal,
+        faces: number("faces"),
+        least: number("least"),
+        low: number("low"),
+        mean: number("mean"),
+        regular: number("regular"),
+        rms: number("rms"),
+        hausdorff: number("hausdorff"),
         milliseconds,
     })
 }

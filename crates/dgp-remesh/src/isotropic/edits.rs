@@ -13,6 +13,8 @@ use crate::Error;
 pub(super) const LONG: f64 = 4.0 / 3.0;
 /// Shorter than so many times the length wanted is short.
 pub(super) const SHORT: f64 = 4.0 / 5.0;
+/// By how much a collapse may exceed what is long, at most.
+const MOST_STRETCH: f64 = 1.5;
 /// Classes of edges by their lengths: see [`class_of`].
 const CLASSES: usize = 64;
 /// The least cosine between a triangle before and after an edit.
@@ -183,7 +185,10 @@ impl Surface {
         let Some(Collapse { goes, stays, position, along }) = self.planned(h, lines) else {
             return false;
         };
-        if self.is_too_long(goes, stays, position)
+        // The shorter an edge is, the longer others may become in its place: where triangles are stretched alike, all
+        // collapses would be refused otherwise. What is too long then is split again.
+        let most = LONG * (SHORT / self.relative(h).sqrt()).min(MOST_STRETCH);
+        if self.is_too_long([goes, stays], position, most)
             || self.turns(goes, stays, position)
             || self.turns(stays, goes, position)
             || !self.may_collapse(h)
@@ -248,13 +253,14 @@ impl Surface {
         })
     }
 
-    /// Whether an edge at `a` or `b` would be too long if both were at `p`, and longer than it was.
-    fn is_too_long(&self, a: u32, b: u32, p: DVec3) -> bool {
+    /// Whether an edge at `a` or `b` would be longer than `most` times the length wanted if both were at `p`, and longer
+    /// than it was.
+    fn is_too_long(&self, [a, b]: [u32; 2], p: DVec3, most: f64) -> bool {
         let mut is_long = false;
         for (v, other) in [(a, b), (b, a)] {
             let here = self.position(v);
             self.each_neighbor(v, |w| {
-                let size = LONG * self.size(v, w);
+                let size = most * self.size(v, w);
                 let q = self.position(w);
                 let now = q.distance_squared(p);
                 is_long |= w != other && now > size * size && now > q.distance_squared(here);

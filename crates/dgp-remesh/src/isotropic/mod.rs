@@ -89,6 +89,9 @@ pub fn remesh_isotropic(
     run.finish(mesh, progress.part(0.9, 1.0))
 }
 
+/// Steps after the last iteration that neither split nor collapse: what was split last is relaxed only then.
+const POLISH: usize = 3;
+
 /// What sizes must be.
 const FEASIBLE: &str = "so large that 67 million triangles suffice";
 
@@ -151,21 +154,23 @@ impl Run {
         })
     }
 
-    /// The loop of the paper, and flips for the sake of angles at its end.
+    /// The loop of the paper, then some steps that only flip and relax.
     fn iterate(&mut self, count: usize, progress: Progress<'_>) -> Result<(), Error> {
-        for i in 0..count {
-            let part = |x: f64| (i as f64 + x) / (count + 1) as f64;
+        if count == 0 {
+            return Ok(progress.report(1.0)?);
+        }
+        for i in 0..count + POLISH {
+            let part = |x: f64| (i as f64 + x) / (count + POLISH) as f64;
             let (surface, lines) = (&mut self.surface, &self.lines);
-            self.splits += surface.split_long(lines, progress.part(part(0.0), part(0.2)))?;
-            self.collapses += surface.collapse_short(lines, progress.part(part(0.2), part(0.4)))?;
+            if i < count {
+                let collapsing = progress.part(part(0.2), part(0.4));
+                self.splits += surface.split_long(lines, progress.part(part(0.0), part(0.2)))?;
+                self.collapses += surface.collapse_short(lines, collapsing)?;
+            }
             self.flips += surface.flip_all(Aim::Valences, progress.part(part(0.4), part(0.6)))?;
-            let relaxing = progress.part(part(0.6), part(1.0));
-            let _ = surface.relax(&self.ground, lines, &self.sizing, relaxing)?;
+            surface.relax(&self.ground, lines, &self.sizing, progress.part(part(0.6), part(1.0)))?;
         }
-        if count > 0 {
-            let last = count as f64 / (count + 1) as f64;
-            self.flips += self.surface.flip_all(Aim::Angles, progress.part(last, 1.0))?;
-        }
+        self.flips += self.surface.flip_all(Aim::Angles, Progress::NONE)?;
         progress.report(1.0)?;
         Ok(())
     }

@@ -34,14 +34,14 @@ struct Moved {
 }
 
 impl Surface {
-    /// One step of relaxation for all vertices. Returns how many would have turned triangles over, and stayed.
+    /// One step of relaxation for all vertices; those that would turn triangles over stay.
     pub(super) fn relax(
         &mut self,
         ground: &Ground,
         lines: &[Line],
         sizing: &Sizing,
         progress: Progress<'_>,
-    ) -> Result<usize, Cancelled> {
+    ) -> Result<(), Cancelled> {
         progress.report(0.0)?;
         let moved: VertexMap<Moved> = parallel::map(self.vertices.len(), |v: VertexId| {
             self.moved(v.index() as u32, ground, lines, sizing)
@@ -73,7 +73,6 @@ impl Surface {
                 }
             }
         }
-        let count = stays.iter().filter(|&&stays| stays).count();
         for (v, (new, stays)) in moved.into_iter().zip(stays).enumerate() {
             if !stays {
                 self.positions[v] = new.position;
@@ -83,7 +82,7 @@ impl Surface {
                 vertex.size = new.size;
             }
         }
-        Ok(count)
+        Ok(())
     }
 
     /// Where `v` moves to.
