@@ -2,7 +2,9 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use dgp_mesh::{EdgeSet, Progress, VertexSet, measure::edge_length_range, shapes};
-use dgp_remesh::{AdaptiveOptions, RemeshOptions, remesh_adaptive, remesh_isotropic, triangle_quality};
+use dgp_remesh::{
+    AdaptiveOptions, RemeshOptions, remesh_adaptive, remesh_isotropic, triangle_quality,
+};
 
 fn remeshing(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("remesh");
@@ -36,7 +38,8 @@ fn remeshing(criterion: &mut Criterion) {
         b.iter_batched(
             || mesh.clone(),
             |mut mesh| {
-                remesh_adaptive(&mut mesh, 0.005, kept, &options, Progress::NONE).expect("triangles")
+                remesh_adaptive(&mut mesh, 0.005, kept, &options, Progress::NONE)
+                    .expect("triangles")
             },
             BatchSize::LargeInput,
         );

@@ -54,7 +54,9 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
             return table.verdict();
         }
         [option] if option == "--regenerate" => true,
-        _ => return Err("usage: golden [--regenerate | --refined | --remeshing | --spatial]".into()),
+        _ => {
+            return Err("usage: golden [--regenerate | --refined | --remeshing | --spatial]".into());
+        }
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;

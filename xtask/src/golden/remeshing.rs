@@ -66,7 +66,16 @@ struct Figures {
 pub(super) fn compare(peers: &Peers, folder: &Path, table: &mut Table) -> Outcome<()> {
     println!(
         "{:24} {:6} {:>8} {:>7} {:>7} {:>7} {:>8} {:>10} {:>10} {:>8}",
-        "remeshing", "", "faces", "least °", "1 % °", "mean °", "valence6", "rms", "Hausdorff", "ms"
+        "remeshing",
+        "",
+        "faces",
+        "least °",
+        "1 % °",
+        "mean °",
+        "valence6",
+        "rms",
+        "Hausdorff",
+        "ms"
     );
     for case in cases()? {
         let path = folder.join("remeshing.raw");
@@ -101,7 +110,12 @@ pub(super) fn compare(peers: &Peers, folder: &Path, table: &mut Table) -> Outcom
         let more = |a: f64, b: f64| a / b - 1.0;
         let comparisons = vec![
             judge("remeshed_low_angle", less(ours.low, theirs.low), 0.5, [ours.low, theirs.low]),
-            judge("remeshed_mean_angle", less(ours.mean, theirs.mean), 0.5, [ours.mean, theirs.mean]),
+            judge(
+                "remeshed_mean_angle",
+                less(ours.mean, theirs.mean),
+                0.5,
+                [ours.mean, theirs.mean],
+            ),
             judge(
                 "remeshed_regular",
                 less(ours.regular, theirs.regular),

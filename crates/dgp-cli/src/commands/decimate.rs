@@ -235,7 +235,10 @@ fn to_json(report: &DecimationReport) -> Value {
 }
 
 /// The mesh before and after, side by side.
-pub(super) fn picture_of(meshes: [&Mesh; 2], progress: Progress<'_>) -> Result<Vec<u8>, dgp::view::Error> {
+pub(super) fn picture_of(
+    meshes: [&Mesh; 2],
+    progress: Progress<'_>,
+) -> Result<Vec<u8>, dgp::view::Error> {
     use dgp::view::{Framing, Model, Panel, RenderOptions, Scene, Stroke, Style, render};
     /// More faces than this make a wireframe black.
     const WIRED: usize = 20_000;

@@ -113,9 +113,12 @@ impl Remesh {
         let in_file = |failure: Failure| failure.in_file(path);
         let mut features = EdgeSet::new();
         if self.features {
-            for ([v, w], _) in document.subdivision_rules()?.creases.into_iter().filter(|(_, s)| *s > 0.0) {
+            for ([v, w], _) in
+                document.subdivision_rules()?.creases.into_iter().filter(|(_, s)| *s > 0.0)
+            {
                 let no_edge = Failure::NotAnEdge { vertices: [v, w] };
-                features.insert(mesh.halfedge_between(v, w).ok_or(no_edge).map_err(in_file)?.edge());
+                features
+                    .insert(mesh.halfedge_between(v, w).ok_or(no_edge).map_err(in_file)?.edge());
             }
         }
         if mesh.faces().any(|f| mesh.degree(f) != 3) {

@@ -1,12 +1,12 @@
 //! The command as a user meets it: exit codes, messages, reports, pipes, files left behind.
 
 mod decimation;
-mod remeshing;
 mod distances;
 mod elements;
 mod filling;
 mod folder;
 mod operators;
+mod remeshing;
 mod spectra;
 mod subdivision;
 mod subdivision_tables;

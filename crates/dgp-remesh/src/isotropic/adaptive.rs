@@ -67,8 +67,7 @@ pub fn remesh_adaptive(
         "positive and finite",
     )?;
     let diagonal = bounding_box(mesh).map_or(0.0, |bounds| bounds.diagonal());
-    let mut run =
-        Run::new(mesh, kept, &options.remesh, 4.0 * tolerance, progress.part(0.0, 0.05))?;
+    let mut run = Run::new(mesh, kept, &options.remesh, 4.0 * tolerance, progress.part(0.0, 0.05))?;
     let scaled = tolerance * run.down;
     let shortest = options.shortest * scaled;
     in_range("tolerance", tolerance, shortest > 0.0, "not so small beside the mesh")?;
@@ -84,9 +83,8 @@ pub fn remesh_adaptive(
     run.iterate(options.remesh.iterations, progress.part(0.05, 0.5))?;
     let mut corrections = 0;
     let distance = loop {
-        let part = |x: f64| {
-            0.5 + 0.45 * (corrections as f64 + x) / (options.corrections + 1) as f64
-        };
+        let part =
+            |x: f64| 0.5 + 0.45 * (corrections as f64 + x) / (options.corrections + 1) as f64;
         let found = run.measure(mesh, scaled, progress.part(part(0.0), part(0.5)))?;
         let is_within_tolerance = found.upper <= scaled;
         let may_go_on = corrections < options.corrections && !found.factors.is_empty();
@@ -178,11 +176,8 @@ impl Run {
         let mut there = places(input, &self.ground.positions);
         there.extend_from_slice(&self.ground.positions);
         let back = tree.closest_points(&there, progress.part(0.2, 0.4))?;
-        let far: Vec<_> = back
-            .iter()
-            .zip(&there)
-            .filter(|(found, _)| found.distance > AIM * tolerance)
-            .collect();
+        let far: Vec<_> =
+            back.iter().zip(&there).filter(|(found, _)| found.distance > AIM * tolerance).collect();
         for (found, &place) in far {
             if let Some(own) = ground.closest_point(place) {
                 note(&own, found.distance);

@@ -70,9 +70,13 @@ impl Surface {
     ) -> Result<usize, Error> {
         progress.report(0.0)?;
         // Edges whose squared lengths are within a factor of 2 are in the same class.
-        let class = |relative: f64| (relative > LONG * LONG).then(|| class_of(relative));
+        let class = |surface: &Surface, h: u32| {
+            let relative = surface.relative(h);
+            (relative > LONG * LONG && !surface.is_beside_kept(h, lines))
+                .then(|| class_of(relative))
+        };
         let mut classes: Vec<Vec<u32>> = vec![Vec::new(); CLASSES];
-        for (h, class) in self.found(|h| class(self.relative(h))) {
+        for (h, class) in self.found(|h| class(self, h)) {
             classes[class].push(h);
         }
         let mut count = 0;
@@ -85,7 +89,7 @@ impl Surface {
                 let h = classes[k][i];
                 i += 1;
                 // It may have become shorter, and then waits for its turn.
-                match class(self.relative(h)) {
+                match class(self, h) {
                     Some(now) if now >= k => {}
                     Some(now) => {
                         classes[now].push(h);
@@ -96,7 +100,7 @@ impl Surface {
                 let Some(new) = self.split_in_middle(h, lines)? else { continue };
                 count += 1;
                 for g in new.into_iter().filter(|&g| g != NONE) {
-                    if let Some(class) = class(self.relative(g)) {
+                    if let Some(class) = class(self, g) {
                         classes[class.min(k)].push(g);
                     }
                 }
@@ -104,6 +108,19 @@ impl Surface {
             classes[k] = Vec::new();
         }
         Ok(count)
+    }
+
+    /// Whether a triangle at the edge of `h` has a longer side that is not split: splits around that would never end.
+    fn is_beside_kept(&self, h: u32, lines: &[Line]) -> bool {
+        let square = self.square(h);
+        let is_longer = |g: u32| {
+            let line = self.line(g);
+            line != NONE && lines[line as usize].is_kept && self.square(g) >= square
+        };
+        [h, self.twin(h)]
+            .into_iter()
+            .filter(|&side| side != NONE)
+            .any(|side| is_longer(next(side)) || is_longer(prev(side)))
     }
 
     /// Splits the edge of `h`, and returns a half-edge of each edge that is new or has other half-edges now.
@@ -132,8 +149,7 @@ impl Surface {
         let t = self.twin(h);
         let m = self.split(h, position, vertex)?;
         let half = self.vertex(m).spoke;
-        let [across, beside] =
-            if t == NONE { [NONE; 2] } else { [prev(t), prev(self.twin(half))] };
+        let [across, beside] = if t == NONE { [NONE; 2] } else { [prev(t), prev(self.twin(half))] };
         Ok(Some([h, half, next(h), next(half), across, beside]))
     }
 
@@ -220,8 +236,12 @@ impl Surface {
         if !may_go(goes) {
             return None;
         }
-        let mut plan =
-            Collapse { goes, stays, position: self.position(stays), along: self.vertex(stays).along };
+        let mut plan = Collapse {
+            goes,
+            stays,
+            position: self.position(stays),
+            along: self.vertex(stays).along,
+        };
         match line {
             Some(line) => {
                 if may_go(stays) {
@@ -246,10 +266,12 @@ impl Surface {
         let on_line = pair.into_iter().filter(|&v| self.vertex(v).freedom == Freedom::Line);
         on_line.into_iter().any(|v| {
             let here = self.vertex(v).along;
-            self.line_neighbors(v).into_iter().filter(|w| !pair.contains(w) && *w != NONE).any(|w| {
-                let way = line.way(place, here) + line.way(here, along(self, line, w));
-                way.abs() > LARGEST_PART * line.length()
-            })
+            self.line_neighbors(v).into_iter().filter(|w| !pair.contains(w) && *w != NONE).any(
+                |w| {
+                    let way = line.way(place, here) + line.way(here, along(self, line, w));
+                    way.abs() > LARGEST_PART * line.length()
+                },
+            )
         })
     }
 
@@ -283,8 +305,7 @@ impl Surface {
             let (was, is) = (before.length_squared(), after.length_squared());
             let cosine = before.dot(after);
             // What had no area may turn as it likes.
-            was > 0.0
-                && (cosine <= 0.0 || cosine * cosine < LEAST_COSINE * LEAST_COSINE * was * is)
+            was > 0.0 && (cosine <= 0.0 || cosine * cosine < LEAST_COSINE * LEAST_COSINE * was * is)
         })
     }
 }

@@ -26,8 +26,7 @@ impl Surface {
     /// What is left, in its order, at coordinates multiplied by `scale`.
     pub(super) fn packed(&self, scale: f64) -> Result<Packed, Error> {
         let count = self.vertices.len();
-        let vertices: Vec<u32> =
-            (0..count as u32).filter(|&v| self.vertex(v).is_there).collect();
+        let vertices: Vec<u32> = (0..count as u32).filter(|&v| self.vertex(v).is_there).collect();
         let mut number = vec![NONE; count];
         for (i, &v) in vertices.iter().enumerate() {
             number[v as usize] = i as u32;
@@ -35,9 +34,7 @@ impl Surface {
         let triangles: Vec<u32> =
             (0..self.triangles.len()).filter(|&f| self.has(f)).map(|f| f as u32).collect();
         let faces = triangles.iter().map(|&f| {
-            self.triangles[f as usize]
-                .from
-                .map(|v| VertexId::new(number[v as usize] as usize))
+            self.triangles[f as usize].from.map(|v| VertexId::new(number[v as usize] as usize))
         });
         let list = FaceList::from_triangles(faces.collect());
         let connectivity = Connectivity::from_faces(vertices.len(), &list)?;
@@ -90,11 +87,13 @@ impl Surface {
             carried.vertex = both.gather(packed.vertices.len(), of);
         }
         if !data.face.is_empty() {
-            let sources: FaceMap<Option<FaceId>> = parallel::map(packed.triangles.len(), |f: FaceId| {
-                let [p, q, r] =
-                    self.triangles[packed.triangles[f.index()] as usize].from.map(|v| self.position(v));
-                ground.tree.closest_point((p + q + r) / 3.0).map(|found| found.face)
-            });
+            let sources: FaceMap<Option<FaceId>> =
+                parallel::map(packed.triangles.len(), |f: FaceId| {
+                    let [p, q, r] = self.triangles[packed.triangles[f.index()] as usize]
+                        .from
+                        .map(|v| self.position(v));
+                    ground.tree.closest_point((p + q + r) / 3.0).map(|found| found.face)
+                });
             carried.face = data.face.gather(packed.triangles.len(), |f: FaceId| sources[f]);
         }
         if !data.corner.is_empty() {

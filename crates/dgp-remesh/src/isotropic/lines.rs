@@ -206,12 +206,10 @@ fn turns(chain: &[Step], surface: &Surface, sharp: &Sharp<'_>, corners: &mut Ver
     };
     let range = if is_loop { 0..last } else { 1..last };
     for i in range {
-        let [before, after] = if is_loop {
-            [(i + last - 1) % last, (i + 1) % last]
-        } else {
-            [i - 1, i + 1]
-        };
-        if turns(at(before), at(i), at(after)) && turns(reached(i, false), at(i), reached(i, true)) {
+        let [before, after] =
+            if is_loop { [(i + last - 1) % last, (i + 1) % last] } else { [i - 1, i + 1] };
+        if turns(at(before), at(i), at(after)) && turns(reached(i, false), at(i), reached(i, true))
+        {
             corners.insert(chain[i].0);
         }
     }

@@ -30,7 +30,9 @@ mod relax;
 mod sizing;
 mod surface;
 
-use dgp_mesh::{DVec3, EdgeSet, Mesh, Progress, VertexId, VertexMap, VertexSet, spatial::TriangleTree};
+use dgp_mesh::{
+    DVec3, EdgeSet, Mesh, Progress, VertexId, VertexMap, VertexSet, spatial::TriangleTree,
+};
 
 pub use adaptive::remesh_adaptive;
 pub use options::{AdaptiveOptions, Distance, Origin, RemeshOptions, RemeshReport, Rims};
@@ -168,7 +170,12 @@ impl Run {
                 self.collapses += surface.collapse_short(lines, collapsing)?;
             }
             self.flips += surface.flip_all(Aim::Valences, progress.part(part(0.4), part(0.6)))?;
-            surface.relax(&self.ground, lines, &self.sizing, progress.part(part(0.6), part(1.0)))?;
+            surface.relax(
+                &self.ground,
+                lines,
+                &self.sizing,
+                progress.part(part(0.6), part(1.0)),
+            )?;
         }
         self.flips += self.surface.flip_all(Aim::Angles, Progress::NONE)?;
         progress.report(1.0)?;
@@ -212,11 +219,16 @@ impl Surface {
     fn is_feasible(&self) -> bool {
         let mut count = 0.0;
         for triangle in self.triangles.iter().filter(|triangle| triangle.from[0] != NONE) {
-            let size = triangle.from.map(|v| self.vertex(v).size).into_iter().fold(f64::INFINITY, f64::min);
+            let size = triangle
+                .from
+                .map(|v| self.vertex(v).size)
+                .into_iter()
+                .fold(f64::INFINITY, f64::min);
             let [a, b, c] = triangle.from.map(|v| self.position(v) / size);
             // Equilateral triangles of side 1 have an area of √3/4; a side of length l ends at least l of them.
             let area = 0.5 * (b - a).cross(c - a).length();
-            count += area * 4.0 / 3.0_f64.sqrt() + 0.5 * (a.distance(b) + b.distance(c) + c.distance(a));
+            count +=
+                area * 4.0 / 3.0_f64.sqrt() + 0.5 * (a.distance(b) + b.distance(c) + c.distance(a));
         }
         count <= MOST_TRIANGLES as f64
     }

@@ -29,7 +29,9 @@ pub fn triangle_quality(mesh: &Mesh) -> Result<TriangleQuality, Error> {
     if let Some(face) = mesh.faces().find(|&f| mesh.triangle(f).is_none()) {
         return Err(Error::NotTriangle { face, degree: mesh.degree(face) });
     }
-    let smallest = |f: FaceId| mesh.face_halfedges(f).map(|h| mesh.corner_angle(h)).fold(f64::INFINITY, f64::min);
+    let smallest = |f: FaceId| {
+        mesh.face_halfedges(f).map(|h| mesh.corner_angle(h)).fold(f64::INFINITY, f64::min)
+    };
     let angles = parallel::map(mesh.face_count(), smallest);
     let mut angles = angles.into_values();
     if angles.is_empty() {

@@ -84,7 +84,7 @@ pub(super) fn next(h: u32) -> u32 {
 
 #[inline]
 pub(super) fn prev(h: u32) -> u32 {
-    if h & 3 == 0 { h + 2 } else { h - 1 }
+    if h.is_multiple_of(4) { h + 2 } else { h - 1 }
 }
 
 /// Triangles of a manifold, with holes perhaps.
@@ -297,12 +297,7 @@ impl Surface {
     ///     \g/           \g|g2/
     ///      d              d
     /// ```
-    pub(super) fn split(
-        &mut self,
-        h: u32,
-        position: DVec3,
-        vertex: Vertex,
-    ) -> Result<u32, Error> {
+    pub(super) fn split(&mut self, h: u32, position: DVec3, vertex: Vertex) -> Result<u32, Error> {
         if self.face_count + 2 > MOST_TRIANGLES {
             return Err(too_many(self.face_count + 2));
         }
@@ -583,7 +578,9 @@ mod tests {
                 }
                 match pick / 3 % 4 {
                     0 => {
-                        let p = surface.position(surface.from(h)).midpoint(surface.position(surface.to(h)));
+                        let p = surface
+                            .position(surface.from(h))
+                            .midpoint(surface.position(surface.to(h)));
                         surface.split(h, p, Vertex::new(1.0)).unwrap();
                         done[0] += 1;
                     }
@@ -599,13 +596,14 @@ mod tests {
                         }
                     }
                     _ if surface.may_collapse(h) => {
-                        let goes = if pick % 2 == 0 { surface.from(h) } else { surface.to(h) };
+                        let goes =
+                            if pick.is_multiple_of(2) { surface.from(h) } else { surface.to(h) };
                         surface.collapse(h, goes);
                         done[2] += 1;
                     }
                     _ => {}
                 }
-                if pick % 64 == 0 {
+                if pick.is_multiple_of(64) {
                     check(&surface);
                 }
             }

@@ -1,6 +1,9 @@
 //! The lines of the table for decimation.
 
-use dgp_mesh::{EdgeSet, HalfedgeId, Mesh, Progress, VertexSet, measure::{bounding_box, edge_length_range}};
+use dgp_mesh::{
+    EdgeSet, HalfedgeId, Mesh, Progress, VertexSet,
+    measure::{bounding_box, edge_length_range},
+};
 use dgp_remesh::{
     AdaptiveOptions, CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost,
     Memory, Patch, Placement, ProgressiveMesh, QuadricCost, QuadricOptions, RemeshOptions, Rims,
@@ -49,11 +52,8 @@ pub(crate) fn decimations() -> Vec<Algorithm> {
         mesh("fill_holes fair", |m, p| filled(m, Patch::Fair, p)),
         mesh("remesh_isotropic", |m, p| remeshed(m, &RemeshOptions::default(), p)),
         mesh("remesh_isotropic with kept rims", |m, p| {
-            let options = RemeshOptions {
-                rims: Rims::Kept,
-                iterations: 3,
-                ..RemeshOptions::default()
-            };
+            let options =
+                RemeshOptions { rims: Rims::Kept, iterations: 3, ..RemeshOptions::default() };
             remeshed(m, &options, p)
         }),
         mesh("remesh_adaptive", |m, p| {
