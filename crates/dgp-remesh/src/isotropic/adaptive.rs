@@ -77,7 +77,7 @@ pub fn remesh_adaptive(
         longest: (options.longest * diagonal * run.down).max(shortest),
         gradation: options.gradation,
     };
-    run.sizing = Sizing::from_curvature(mesh, &run.surface, &wanted)?;
+    run.sizing = Sizing::from_curvature(mesh, &run.surface, &run.lines, &wanted)?;
     run.take_sizes();
     in_range("tolerance", tolerance, run.surface.is_feasible(), FEASIBLE)?;
     run.iterate(options.remesh.iterations, progress.part(0.05, 0.5))?;
@@ -114,7 +114,7 @@ struct Found {
 
 impl Run {
     /// Looks up the length wanted at each vertex.
-    fn take_sizes(&mut self) {
+    pub(super) fn take_sizes(&mut self) {
         let (ground, sizing) = (&self.ground, &self.sizing);
         let surface = &self.surface;
         let sizes = parallel::map(surface.vertices.len(), |v: dgp_mesh::VertexId| {

@@ -62,18 +62,19 @@ impl Surface {
         blocks.into_iter().flatten().collect()
     }
 
-    /// Splits edges that are too long at their middles, nearly the longest first. Returns how many.
+    /// Splits edges that are too long at their middles, nearly the longest first, until there are more than `most`
+    /// triangles: then lines contradict the lengths wanted. Returns how many.
     pub(super) fn split_long(
         &mut self,
         lines: &[Line],
+        most: usize,
         progress: Progress<'_>,
     ) -> Result<usize, Error> {
         progress.report(0.0)?;
         // Edges whose squared lengths are within a factor of 2 are in the same class.
         let class = |surface: &Surface, h: u32| {
             let relative = surface.relative(h);
-            (relative > LONG * LONG && !surface.is_beside_kept(h, lines))
-                .then(|| class_of(relative))
+            (relative > LONG * LONG).then(|| class_of(relative))
         };
         let mut classes: Vec<Vec<u32>> = vec![Vec::new(); CLASSES];
         for (h, class) in self.found(|h| class(self, h)) {
@@ -82,7 +83,7 @@ impl Surface {
         let mut count = 0;
         for k in (0..CLASSES).rev() {
             let mut i = 0;
-            while i < classes[k].len() {
+            while i < classes[k].len() && self.face_count <= most {
                 if i % BETWEEN == 0 {
                     progress.report((CLASSES - k) as f64 / CLASSES as f64)?;
                 }
@@ -108,19 +109,6 @@ impl Surface {
             classes[k] = Vec::new();
         }
         Ok(count)
-    }
-
-    /// Whether a triangle at the edge of `h` has a longer side that is not split: splits around that would never end.
-    fn is_beside_kept(&self, h: u32, lines: &[Line]) -> bool {
-        let square = self.square(h);
-        let is_longer = |g: u32| {
-            let line = self.line(g);
-            line != NONE && lines[line as usize].is_kept && self.square(g) >= square
-        };
-        [h, self.twin(h)]
-            .into_iter()
-            .filter(|&side| side != NONE)
-            .any(|side| is_longer(next(side)) || is_longer(prev(side)))
     }
 
     /// Splits the edge of `h`, and returns a half-edge of each edge that is new or has other half-edges now.

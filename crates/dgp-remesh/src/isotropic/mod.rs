@@ -86,6 +86,10 @@ pub fn remesh_isotropic(
     for vertex in &mut run.surface.vertices {
         vertex.size = length;
     }
+    if options.rims == Rims::Kept {
+        run.sizing = Sizing::beside_kept(mesh, &run.surface, &run.lines, length);
+        run.take_sizes();
+    }
     in_range("length", length / run.down, run.surface.is_feasible(), FEASIBLE)?;
     run.iterate(options.iterations, progress.part(0.1, 0.9))?;
     run.finish(mesh, progress.part(0.9, 1.0))
@@ -161,12 +165,14 @@ impl Run {
         if count == 0 {
             return Ok(progress.report(1.0)?);
         }
+        let most = 1000 + (4.0 * self.surface.estimate()) as usize;
         for i in 0..count + POLISH {
             let part = |x: f64| (i as f64 + x) / (count + POLISH) as f64;
             let (surface, lines) = (&mut self.surface, &self.lines);
             if i < count {
                 let collapsing = progress.part(part(0.2), part(0.4));
-                self.splits += surface.split_long(lines, progress.part(part(0.0), part(0.2)))?;
+                self.splits +=
+                    surface.split_long(lines, most, progress.part(part(0.0), part(0.2)))?;
                 self.collapses += surface.collapse_short(lines, collapsing)?;
             }
             self.flips += surface.flip_all(Aim::Valences, progress.part(part(0.4), part(0.6)))?;
@@ -217,6 +223,11 @@ impl Run {
 impl Surface {
     /// Whether there is room for triangles of the sizes wanted.
     fn is_feasible(&self) -> bool {
+        self.estimate() <= MOST_TRIANGLES as f64
+    }
+
+    /// About how many triangles of the sizes wanted there will be.
+    fn estimate(&self) -> f64 {
         let mut count = 0.0;
         for triangle in self.triangles.iter().filter(|triangle| triangle.from[0] != NONE) {
             let size = triangle
@@ -230,7 +241,7 @@ impl Surface {
             count +=
                 area * 4.0 / 3.0_f64.sqrt() + 0.5 * (a.distance(b) + b.distance(c) + c.distance(a));
         }
-        count <= MOST_TRIANGLES as f64
+        count
     }
 
     /// How many edges are too short and too long.

@@ -17,7 +17,11 @@ use dgp_mesh::{
     graph::IndexedHeap, spatial::ClosestPoint,
 };
 
-use super::surface::{Freedom, NONE, Surface};
+use super::{
+    edits::halfedges,
+    lines::Line,
+    surface::{Freedom, NONE, Surface},
+};
 use crate::Error;
 
 /// The length wanted at each vertex of the input, between which it is linear.
@@ -25,8 +29,13 @@ use crate::Error;
 pub(super) struct Sizing {
     /// Empty if it is the same everywhere.
     values: Vec<f64>,
+    /// What it cannot be shorter than beside edges that are kept: longer ones cannot be split there without end.
+    floor: Vec<f64>,
     least: f64,
 }
+
+/// By how much the length may shrink over a distance of one away from edges that are kept.
+const SLOPE: f64 = 0.3;
 
 /// What sizes are made for.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +50,14 @@ pub(super) struct Wanted {
 impl Sizing {
     /// The same everywhere: vertices know it.
     pub(super) fn uniform() -> Self {
-        Sizing { values: Vec::new(), least: 0.0 }
+        Sizing { values: Vec::new(), floor: Vec::new(), least: 0.0 }
+    }
+
+    /// The same everywhere but beside edges that are kept and longer.
+    pub(super) fn beside_kept(mesh: &Mesh, surface: &Surface, lines: &[Line], length: f64) -> Self {
+        let floor = kept_lengths(mesh, surface, lines);
+        let values = floor.iter().map(|&floor| floor.max(length)).collect();
+        Sizing { values, floor, least: length }
     }
 
     pub(super) fn varies(&self) -> bool {
@@ -59,6 +75,7 @@ impl Sizing {
     pub(super) fn from_curvature(
         mesh: &Mesh,
         surface: &Surface,
+        lines: &[Line],
         wanted: &Wanted,
     ) -> Result<Self, Error> {
         let Wanted { tolerance, shortest, longest, .. } = *wanted;
@@ -69,8 +86,10 @@ impl Sizing {
             let length = if square > 0.0 { square.sqrt() } else { 0.0 };
             length.clamp(shortest, longest)
         };
-        let mut sizing = Sizing { values: bends.into_iter().map(of).collect(), least: shortest };
-        sizing.smooth(mesh, surface, wanted.gradation);
+        let values = bends.into_iter().map(of).collect();
+        let floor = kept_lengths(mesh, surface, lines);
+        let mut sizing = Sizing { values, floor, least: shortest };
+        sizing.smooth(mesh, &surface.positions, wanted.gradation);
         Ok(sizing)
     }
 
@@ -79,7 +98,7 @@ impl Sizing {
     pub(super) fn shorten(
         &mut self,
         mesh: &Mesh,
-        surface: &[DVec3],
+        positions: &[DVec3],
         factors: &[f64],
         gradation: f64,
     ) -> bool {
@@ -89,16 +108,12 @@ impl Sizing {
             has_changed |= new < *value;
             *value = new;
         }
-        self.smooth_over(mesh, surface, gradation);
+        self.smooth(mesh, positions, gradation);
         has_changed
     }
 
-    fn smooth(&mut self, mesh: &Mesh, surface: &Surface, gradation: f64) {
-        self.smooth_over(mesh, &surface.positions, gradation);
-    }
-
     /// Lowers values until L(v) ≤ L(w) + gradation |vw| along every edge.
-    fn smooth_over(&mut self, mesh: &Mesh, positions: &[DVec3], gradation: f64) {
+    fn smooth(&mut self, mesh: &Mesh, positions: &[DVec3], gradation: f64) {
         let keys = self.values.iter().enumerate().map(|(v, &value)| (VertexId::new(v), value));
         let mut queue = IndexedHeap::from_keys(keys);
         while let Some((v, value)) = queue.pop() {
@@ -111,7 +126,41 @@ impl Sizing {
                 }
             }
         }
+        for (value, floor) in self.values.iter_mut().zip(&self.floor) {
+            *value = value.max(*floor);
+        }
     }
+}
+
+/// The longest edge that is kept at each vertex, less what lies between it and others; zero without any.
+fn kept_lengths(mesh: &Mesh, surface: &Surface, lines: &[Line]) -> Vec<f64> {
+    let mut lengths = vec![0.0_f64; surface.vertices.len()];
+    if lines.iter().all(|line| !line.is_kept) {
+        return lengths;
+    }
+    for h in (0..surface.triangles.len()).flat_map(halfedges) {
+        let line = surface.line(h);
+        if line != NONE && lines[line as usize].is_kept {
+            let length = surface.square(h).sqrt();
+            for v in [surface.from(h), surface.to(h)] {
+                lengths[v as usize] = lengths[v as usize].max(length);
+            }
+        }
+    }
+    // The longest first: the heap gives the least.
+    let keys = lengths.iter().enumerate().map(|(v, &length)| (VertexId::new(v), -length));
+    let mut queue = IndexedHeap::from_keys(keys);
+    while let Some((v, key)) = queue.pop() {
+        for w in mesh.vertex_neighbors(v) {
+            let distance = surface.positions[v.index()].distance(surface.positions[w.index()]);
+            let least = -key - SLOPE * distance;
+            if least > lengths[w.index()] && queue.key(w).is_some() {
+                lengths[w.index()] = least;
+                queue.set(w, -least);
+            }
+        }
+    }
+    lengths
 }
 
 /// The largest curvature at each vertex, on any side of the lines there or of the line itself.
