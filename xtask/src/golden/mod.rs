@@ -77,7 +77,6 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
     estimates::compare(&peers, &folder, &mut table)?;
     refined::compare(&peers, &folder, &mut table)?;
     spatial::compare(&peers, &folder, &mut table)?;
-    remeshing::compare(&peers, &folder, &mut table)?;
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()
