@@ -145,8 +145,16 @@ fn figures(driver: &Driver, case: &Case, percent: u32, path: &Path) -> Outcome<F
     let out = path.with_file_name("remeshed");
     let out = out.to_string_lossy();
     let percent = percent.to_string();
-    let options =
-        ["--scheme", case.scheme, "--levels", percent.as_str(), "--out", out.as_ref(), "--repeat", "3"];
+    let options = [
+        "--scheme",
+        case.scheme,
+        "--levels",
+        percent.as_str(),
+        "--out",
+        out.as_ref(),
+        "--repeat",
+        "3",
+    ];
     let answer = driver.call("remesh", path, &options)?;
     let times = answer["ms"].as_array().into_iter().flatten();
     let milliseconds = times.filter_map(serde_json::Value::as_f64).fold(f64::INFINITY, f64::min);
