@@ -11,9 +11,11 @@
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/compute_normal.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/detect_features.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh/IO.h>
@@ -258,6 +260,36 @@ void decimate(Report& report, const Raw& raw, const Call& call) {
     if (!call.out.empty()) write_mesh_raw(*last, call.out + ".raw");
 }
 
+// Five iterations on a copy, edges of `--levels` percent of the mean length; `sharp` keeps edges that bend by more than
+// 40 degrees. The last one is written.
+void remesh(Report& report, const Raw& raw, const Call& call) {
+    const auto original = built(raw);
+    double length = 0;
+    for (const auto e : original->edges()) length += pmp::edge_length(original->halfedge(e), *original);
+    // Without `--levels` the length is the mean one.
+    length *= (call.levels == 1 ? 1.0 : call.levels / 100.0) / double(original->number_of_edges());
+    std::unique_ptr<Mesh> last;
+    report.time_from(
+        call.repeat,
+        [&] {
+            last.reset();
+            last = std::make_unique<Mesh>(*original);
+            return last.get();
+        },
+        [&](Mesh* mesh) {
+            const auto sharp = mesh->add_property_map<Mesh::Edge_index, bool>("e:sharp", false).first;
+            if (call.scheme == "sharp") pmp::detect_sharp_edges(*mesh, 40.0, sharp);
+            pmp::isotropic_remeshing(mesh->faces(), length, *mesh,
+                CGAL::parameters::number_of_iterations(5).edge_is_constrained_map(sharp));
+            return 0;
+        });
+    last->collect_garbage();
+    report.number("length", length);
+    report.number("vertices", double(last->number_of_vertices()));
+    report.number("faces", double(last->number_of_faces()));
+    if (!call.out.empty()) write_mesh_raw(*last, call.out + ".raw");
+}
+
 // Refines a copy; the last one is written.
 void subdivide(Report& report, const Raw& raw, const Call& call) {
     namespace method = CGAL::Subdivision_method_3;
@@ -389,6 +421,7 @@ int main(int count, char** arguments) {
             if (call.operation == "facts") facts(report, raw, call.out);
             else if (call.operation == "subdivide") subdivide(report, raw, call);
             else if (call.operation == "decimate") decimate(report, raw, call);
+            else if (call.operation == "remesh") remesh(report, raw, call);
             else if (call.operation == "repair") repair(report, raw, call);
             else if (call.operation == "dijkstra") dijkstra(report, raw, call);
             else if (call.operation == "curvature") curvature(raw, call);

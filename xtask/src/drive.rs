@@ -3,6 +3,7 @@
 
 mod decimation;
 mod holes;
+mod remeshing;
 mod spatial;
 pub(crate) mod subdivision;
 
@@ -39,12 +40,14 @@ struct Call {
     out: PathBuf,
     scheme: String,
     levels: usize,
+    /// A second mesh, to compare with.
+    other: PathBuf,
 }
 
 impl Call {
     fn parse(arguments: &[String]) -> Outcome<Call> {
         let [operation, input, options @ ..] = arguments else {
-            return Err("usage: drive OPERATION INPUT [--repeat N] [--out FILE] [--scheme NAME] [--levels N]".into());
+            return Err("usage: drive OPERATION INPUT [--repeat N] [--out FILE] [--scheme NAME] [--levels N] [--other FILE]".into());
         };
         let mut call = Call {
             operation: operation.clone(),
@@ -53,11 +56,13 @@ impl Call {
             out: PathBuf::new(),
             scheme: String::new(),
             levels: 1,
+            other: PathBuf::new(),
         };
         for pair in options.chunks(2) {
             match pair {
                 [name, value] if name == "--repeat" => call.repeat = value.parse()?,
                 [name, value] if name == "--out" => call.out = value.into(),
+                [name, value] if name == "--other" => call.other = value.into(),
                 [name, value] if name == "--scheme" => call.scheme.clone_from(value),
                 [name, value] if name == "--levels" => call.levels = value.parse()?,
                 _ => return Err(format!("unknown option {}", pair[0]).into()),
@@ -134,6 +139,7 @@ fn perform(call: &Call, report: &mut Map<String, Value>) -> Outcome<()> {
             time(report, call.repeat, || Ok(render(&scene, &options, Progress::NONE)?))
         }
         "decimate" | "progressive" => decimation::perform(call, report),
+        "remesh" | "remeshed" => remeshing::perform(call, report),
         "subdivide" | "plan-refine" | "plan" | "refine" | "stencils" => {
             subdivision::perform(call, report)
         }

@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         Command::Evaluate(command) => command.run(&common),
         Command::Stencils(command) => command.run(&common),
         Command::Decimate(command) => command.run(&common),
+        Command::Remesh(command) => command.run(&common),
         Command::Fill(command) => command.run(&common),
         Command::Voronoi(command) => command.run(&common),
         Command::Sample(command) => command.run(&common),

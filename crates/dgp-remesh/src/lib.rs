@@ -5,6 +5,9 @@
 //! | fewer triangles, fast and close to the input | [`decimate_quadric`], [`QuadricOptions`] |
 //! | any cost, any constraint, any data | [`decimate`](decimate()), [`CollapseCost`], [`LengthCost`], [`CurvatureCost`], [`QuadricCost`] |
 //! | all levels of detail of a mesh, exactly | [`ProgressiveMesh`], [`ProgressiveStream`], [`Geomorph`] |
+//! | triangles nearly equilateral, of one size | [`remesh_isotropic`], [`RemeshOptions`] |
+//! | the same, as fine as the shape needs | [`remesh_adaptive`], [`AdaptiveOptions`] |
+//! | how good triangles are | [`triangle_quality`] |
 //! | holes closed, smoothly | [`fill_holes`], [`FillOptions`] |
 //! | surfaces mended: slivers, T-junctions, self-intersections | [`repair_surface`], [`remove_self_intersections`], [`remove_slivers`], [`stitch_rims`] |
 //! | points on a surface, at random or evenly | [`sample_uniform`], [`sample_stratified`], [`sample_poisson_disk`], [`sample_blue_noise`] |
@@ -27,6 +30,7 @@
 mod decimate;
 mod error;
 mod fill;
+mod isotropic;
 mod progressive;
 mod quadric;
 mod repair;
@@ -40,6 +44,10 @@ pub use decimate::{
 };
 pub use error::Error;
 pub use fill::{FillOptions, FillReport, Hole, HoleOutcome, LongestRim, Patch, fill_holes};
+pub use isotropic::{
+    AdaptiveOptions, Distance, Origin, RemeshOptions, RemeshReport, Rims, TriangleQuality,
+    remesh_adaptive, remesh_isotropic, triangle_quality,
+};
 pub use progressive::{Geomorph, ProgressiveMesh, ProgressiveStream};
 pub use quadric::Quadric;
 pub use repair::{

@@ -135,6 +135,11 @@ pub(super) fn all() -> Vec<Case> {
         },
         Case {
             openmesh: None,
+            largest: 400_000,
+            ..case("remesh", "five iterations of isotropic remeshing", "remesh")
+        },
+        Case {
+            openmesh: None,
             data: Data::Soup,
             ..case("repair", "faces with one in a hundred turned over, made a mesh", "repair")
         },

@@ -16,7 +16,7 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 const WORST: f64 = 1e9;
 
 /// The quantities that are compared, and their tolerances in words.
-pub(crate) const QUANTITIES: [(&str, &str); 60] = [
+pub(crate) const QUANTITIES: [(&str, &str); 65] = [
     ("accepted", "equal"),
     ("vertices", "equal"),
     ("edges", "equal"),
@@ -77,6 +77,11 @@ pub(crate) const QUANTITIES: [(&str, &str); 60] = [
     ("decimated_largest", "ours at most 1.25 × theirs"),
     ("hole_weight", "not larger by 1e-6 rad, or as bent and larger by 1e-9"),
     ("patch_energy", "not larger than 1.05 of theirs"),
+    ("remeshed_low_angle", "not below the peer's by more than 0.5°"),
+    ("remeshed_mean_angle", "not below the peer's by more than 0.5°"),
+    ("remeshed_regular", "not below the peer's by more than 0.01"),
+    ("remeshed_rms", "not above the peer's by more than 5 %"),
+    ("remeshed_hausdorff", "not above the peer's by more than 10 %"),
 ];
 
 /// How one quantity of one input compares.

@@ -12,6 +12,7 @@ pub(crate) mod holes;
 mod inputs;
 mod mending;
 mod refined;
+mod remeshing;
 mod spatial;
 mod stored;
 mod table;
@@ -30,49 +31,36 @@ use facts::Facts;
 use inputs::Input;
 use table::Table;
 
+/// What compares one subject.
+type Part = fn(&Peers, &Path, &mut Table) -> Outcome<()>;
+
+/// The subjects that can be asked for alone, and whether they are a part of the whole. Those that are not compare
+/// quality, where ours is not always the better.
+const PARTS: [(&str, Part, bool); 6] = [
+    ("--refined", refined::compare, true),
+    ("--spatial", spatial::compare, true),
+    ("--mending", mending::compare, true),
+    ("--decimated", decimated::compare, false),
+    ("--holes", holes::compare, false),
+    ("--remeshing", remeshing::compare, false),
+];
+
 /// Compares all inputs and prints a table; an error if anything differs.
 pub(crate) fn run(options: &[String]) -> Outcome<()> {
     let regenerate = match options {
         [] => false,
-        [option] if option == "--refined" => {
-            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
-            let mut table = Table::default();
-            refined::compare(&peers, &folder, &mut table)?;
-            table.print();
-            return table.verdict();
-        }
-        [option] if option == "--mending" => {
-            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
-            let mut table = Table::default();
-            mending::compare(&peers, &folder, &mut table)?;
-            table.print();
-            return table.verdict();
-        }
-        [option] if option == "--spatial" => {
-            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
-            let mut table = Table::default();
-            spatial::compare(&peers, &folder, &mut table)?;
-            table.print();
-            return table.verdict();
-        }
-        [option] if option == "--holes" => {
-            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
-            let mut table = Table::default();
-            holes::compare(&peers, &folder, &mut table)?;
-            table.print();
-            return table.verdict();
-        }
-        [option] if option == "--decimated" => {
-            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
-            let mut table = Table::default();
-            decimated::compare(&peers, &folder, &mut table)?;
-            table.print();
-            return table.verdict();
-        }
         [option] if option == "--regenerate" => true,
-        _ => {
-            return Err("usage: golden [--regenerate | --refined | --spatial | --decimated | --mending]".into());
+        [option] => {
+            let Some((_, part, _)) = PARTS.iter().find(|(name, ..)| name == option) else {
+                return Err(usage());
+            };
+            let (peers, folder) = (Peers::build(Wanted::Any)?, shell::target("golden")?);
+            let mut table = Table::default();
+            part(&peers, &folder, &mut table)?;
+            table.print();
+            return table.verdict();
         }
+        _ => return Err(usage()),
     };
     let peers = Peers::build(Wanted::Any)?;
     let folder = shell::target("golden")?;
@@ -91,14 +79,17 @@ pub(crate) fn run(options: &[String]) -> Outcome<()> {
         answers(&peers, &folder, &input, &mut table)?;
     }
     estimates::compare(&peers, &folder, &mut table)?;
-    refined::compare(&peers, &folder, &mut table)?;
-    spatial::compare(&peers, &folder, &mut table)?;
-    decimated::compare(&peers, &folder, &mut table)?;
-    mending::compare(&peers, &folder, &mut table)?;
-    holes::compare(&peers, &folder, &mut table)?;
+    for (_, part, _) in PARTS.iter().filter(|(.., is_part)| *is_part) {
+        part(&peers, &folder, &mut table)?;
+    }
     table.print();
     fs::write(folder.join("golden.json"), table.to_json().to_string())?;
     table.verdict()
+}
+
+fn usage() -> Box<dyn std::error::Error> {
+    let parts: Vec<&str> = PARTS.iter().map(|(name, ..)| *name).collect();
+    format!("usage: golden [--regenerate | {}]", parts.join(" | ")).into()
 }
 
 /// Asks every peer about one input, and notes how the answers compare with ours.

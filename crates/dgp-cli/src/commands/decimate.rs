@@ -124,7 +124,7 @@ pub(super) fn amount(text: &str) -> Result<Amount, String> {
     }
 }
 
-fn degrees(text: &str) -> Result<f64, String> {
+pub(super) fn degrees(text: &str) -> Result<f64, String> {
     let found = text.parse::<f64>().ok().filter(|x| (0.0..=180.0).contains(x));
     found.ok_or_else(|| format!("`{text}` is no angle from 0 to 180 degrees"))
 }

@@ -24,6 +24,7 @@ mod manual;
 mod param;
 mod partition;
 mod progressive;
+mod remesh;
 mod render;
 mod repair;
 mod sample;
@@ -63,6 +64,8 @@ pub(crate) enum Command {
     Stencils(stencils::Stencils),
     /// Have fewer faces for the same shape
     Decimate(decimate::Decimate),
+    /// Have triangles nearly equilateral, of one size or as fine as the shape needs
+    Remesh(remesh::Remesh),
     /// Close holes: with few triangles, with small ones, or smoothly
     Fill(fill::Fill),
     /// Keep all levels of detail of a mesh in one file, or take one out

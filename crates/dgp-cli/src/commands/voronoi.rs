@@ -1,17 +1,17 @@
 //! `dgp voronoi`: a new triangulation by centroidal Voronoi cells.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::process::ExitCode;
 
 use clap::Args;
-use dgp::{
-    mesh::{TriangulationMethod, triangulate},
-    remesh::{VoronoiOptions, VoronoiPlacement, VoronoiReport, voronoi_remesh},
-};
+use dgp::remesh::{VoronoiOptions, VoronoiPlacement, VoronoiReport, voronoi_remesh};
 use serde_json::{Value, json};
 
 use crate::{
     cli::{Common, Input, Output},
-    commands::decimate::{Amount, amount, picture_of},
+    commands::{
+        before_after::{BeforeAfter, cut_polygons},
+        decimate::{Amount, amount},
+    },
     failure::Failure,
     session::Session,
 };
@@ -38,9 +38,8 @@ pub(crate) struct Voronoi {
     /// Refine the input to so many vertices for each of the result at least
     #[arg(long, value_name = "N", default_value_t = VoronoiOptions::default().resolution)]
     resolution: f64,
-    /// Draw the mesh before and after into a PNG
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
+    #[command(flatten)]
+    pictured: BeforeAfter,
 }
 
 impl Voronoi {
@@ -50,12 +49,7 @@ impl Voronoi {
         let mut mesh = session.mesh(&self.input, &document)?;
         let path = &self.input.path;
         let in_file = |failure: Failure| failure.in_file(path);
-        if mesh.faces().any(|f| mesh.degree(f) != 3) {
-            session.warn(format!("{}: polygons are cut into triangles first", path.display()));
-            session
-                .run("triangulating", |p| triangulate(&mut mesh, TriangulationMethod::default(), p))
-                .map_err(in_file)?;
-        }
+        cut_polygons(&mut session, &self.input, &mut mesh)?;
         let options = VoronoiOptions {
             seed: common.seed,
             resolution: self.resolution,
@@ -74,10 +68,7 @@ impl Voronoi {
                 report.dropped.join(", ")
             ));
         }
-        if let Some(picture) = &self.picture {
-            let png = session.run("drawing", |p| picture_of([&mesh, &result], p))?;
-            session.store(picture, &png)?;
-        }
+        self.pictured.draw(&mut session, Some(&mesh), &result, &[])?;
         document.set = result.to_indexed();
         // Lines, points and tags name vertices that are gone.
         let comments = std::mem::take(&mut document.comments);

@@ -7,6 +7,7 @@ mod filling;
 mod folder;
 mod layouts;
 mod operators;
+mod remeshing;
 mod repairing;
 mod sampling;
 mod spectra;

@@ -2,7 +2,7 @@
 
 use super::folder::{Dgp, error};
 
-const COMMANDS: [&str; 31] = [
+const COMMANDS: [&str; 32] = [
     "info",
     "check",
     "convert",
@@ -12,6 +12,7 @@ const COMMANDS: [&str; 31] = [
     "evaluate",
     "stencils",
     "decimate",
+    "remesh",
     "progressive",
     "fill",
     "param",

@@ -33,6 +33,20 @@ pub struct ClosestPoint {
     pub barycentric: [f64; 3],
 }
 
+/// What a question found, so that one asked nearby is answered sooner; by default nothing.
+///
+/// It belongs to the tree that was asked. Answers do not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Near {
+    triangle: u32,
+}
+
+impl Default for Near {
+    fn default() -> Self {
+        Near { triangle: u32::MAX }
+    }
+}
+
 /// The best so far: squared distance in the frame, which triangle, and where in it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
@@ -46,6 +60,16 @@ impl TriangleTree {
     pub fn closest_point(&self, p: DVec3) -> Option<ClosestPoint> {
         let q = self.query(p)?;
         self.nearest(q, None).map(|nearest| self.closest_of(p, &nearest))
+    }
+
+    /// What [`closest_point`](Self::closest_point) gives, sooner if `near` was found nearby; `near` becomes what
+    /// is found now. For points that move by little, each keeps its own.
+    pub fn closest_point_near(&self, p: DVec3, near: &mut Near) -> Option<ClosestPoint> {
+        let q = self.query(p)?;
+        let guess = near.triangle as usize;
+        let nearest = self.nearest(q, (guess < self.len()).then_some(guess))?;
+        near.triangle = nearest.triangle as u32;
+        Some(self.closest_of(p, &nearest))
     }
 
     /// The nearest point of the surface for each of `points`, as [`closest_point`](Self::closest_point)

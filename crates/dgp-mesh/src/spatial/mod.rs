@@ -4,7 +4,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | what is nearest to a point | [`TriangleTree::closest_point`], [`TriangleTree::closest_points`], [`TriangleTree::nearest_faces`] |
+//! | what is nearest to a point | [`TriangleTree::closest_point`], [`TriangleTree::closest_points`], [`TriangleTree::closest_point_near`], [`TriangleTree::nearest_faces`] |
 //! | what is near | [`TriangleTree::faces_within`], [`TriangleTree::faces_in_box`] |
 //! | what does a [`Ray`] or a segment meet | [`TriangleTree::first_hit`], [`TriangleTree::all_hits`], [`TriangleTree::is_hit`] |
 //! | which faces pass through each other | [`TriangleTree::self_intersections`] |
@@ -32,7 +32,7 @@ mod signed_distance;
 mod triangle_tree;
 mod winding_number;
 
-pub use closest_point::ClosestPoint;
+pub use closest_point::{ClosestPoint, Near};
 pub use cloud_winding::{AREA_NEIGHBORS, CloudWinding, cloud_areas};
 pub use deviation::{Deviation, DeviationOptions, deviation};
 pub use hausdorff::{

@@ -6,6 +6,7 @@ mod holes;
 mod progressive;
 mod quadrics;
 mod quick;
+mod remeshing;
 mod repairing;
 mod sampling;
 mod voronoi;

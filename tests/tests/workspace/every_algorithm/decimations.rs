@@ -1,12 +1,16 @@
 //! The lines of the table for decimation.
 
-use dgp_mesh::{EdgeSet, HalfedgeId, Mesh, Progress, VertexSet, measure::bounding_box};
+use dgp_mesh::{
+    EdgeSet, HalfedgeId, Mesh, Progress, VertexSet,
+    measure::{bounding_box, edge_length_range},
+};
 use dgp_remesh::{
-    BlueNoiseOptions, CollapseCost, CurvatureCost, DecimationOptions, FillOptions, LengthCost,
-    Memory, Order, Patch, Placement, PoissonOptions, ProgressiveMesh, QuadricCost, QuadricOptions,
-    SampleNormal, Target, VoronoiOptions, VoronoiPlacement, decimate, decimate_quadric, fill_holes,
-    sample_attributes, sample_blue_noise, sample_normals, sample_poisson_disk, sample_stratified,
-    sample_uniform, seam_edges, sharp_edges, voronoi_remesh,
+    AdaptiveOptions, BlueNoiseOptions, CollapseCost, CurvatureCost, DecimationOptions, FillOptions,
+    LengthCost, Memory, Order, Patch, Placement, PoissonOptions, ProgressiveMesh, QuadricCost,
+    QuadricOptions, RemeshOptions, Rims, SampleNormal, Target, VoronoiOptions, VoronoiPlacement,
+    decimate, decimate_quadric, fill_holes, remesh_adaptive, remesh_isotropic, sample_attributes,
+    sample_blue_noise, sample_normals, sample_poisson_disk, sample_stratified, sample_uniform,
+    seam_edges, sharp_edges, triangle_quality, voronoi_remesh,
 };
 
 use super::{
@@ -80,6 +84,20 @@ pub(crate) fn decimations() -> Vec<Algorithm> {
             };
             made(voronoi_remesh(m, 60, &options, p))
         }),
+        mesh("remesh_isotropic", |m, p| remeshed(m, &RemeshOptions::default(), p)),
+        mesh("remesh_isotropic with kept rims", |m, p| {
+            let options =
+                RemeshOptions { rims: Rims::Kept, iterations: 3, ..RemeshOptions::default() };
+            remeshed(m, &options, p)
+        }),
+        mesh("remesh_adaptive", |m, p| {
+            let tolerance = 0.02 * bounding_box(m).map_or(0.0, |bounds| bounds.diagonal());
+            let remesh = RemeshOptions { iterations: 4, ..RemeshOptions::default() };
+            let options = AdaptiveOptions { remesh, corrections: 1, ..AdaptiveOptions::default() };
+            let kept = (&VertexSet::new(), &sharp_edges(m, 1.0));
+            changed(m, |m| remesh_adaptive(m, tolerance, kept, &options, p))
+        }),
+        mesh("triangle_quality", |m, _| Outcome::of(&triangle_quality(m))),
         mesh("sharp_edges, seam_edges", |m, _| Outcome::of(&(sharp_edges(m, 0.5), seam_edges(m)))),
     ]
 }
@@ -87,6 +105,12 @@ pub(crate) fn decimations() -> Vec<Algorithm> {
 fn quadric(input: &Mesh, options: &QuadricOptions, progress: Progress<'_>) -> Outcome {
     let target = Target::Faces(input.face_count() / 3);
     changed(input, |m| decimate_quadric(m, target, &VertexSet::new(), options, progress))
+}
+
+fn remeshed(input: &Mesh, options: &RemeshOptions, progress: Progress<'_>) -> Outcome {
+    let mean = edge_length_range(input).map_or(0.0, |lengths| lengths.mean);
+    let kept = (&VertexSet::new(), &sharp_edges(input, 1.0));
+    changed(input, |m| remesh_isotropic(m, 1.2 * mean, kept, options, progress))
 }
 
 fn filled(input: &Mesh, patch: Patch, progress: Progress<'_>) -> Outcome {
