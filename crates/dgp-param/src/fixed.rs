@@ -151,16 +151,12 @@ fn unsymmetric(
     let mut all = in_place(n, fixed, values);
     let mut is_fixed = vec![false; n];
     for (entry, &row) in fixed.iter().enumerate() {
-        match is_fixed.get_mut(row as usize) {
-            Some(fixed) => *fixed = true,
-            None => {
-                let row = row as usize;
-                let (rows, columns) = (n, n);
-                let error =
-                    dgp_sparse::Error::OutOfRange { entry, row, column: row, rows, columns };
-                return Err(error.into());
-            }
-        }
+        let row = row as usize;
+        let Some(fixed) = is_fixed.get_mut(row) else {
+            let (column, rows, columns) = (row, n, n);
+            return Err(dgp_sparse::Error::OutOfRange { entry, row, column, rows, columns }.into());
+        };
+        *fixed = true;
     }
     let free: Vec<u32> = (0..n as u32).filter(|&i| !is_fixed[i as usize]).collect();
     if free.is_empty() {

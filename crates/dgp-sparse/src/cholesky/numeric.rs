@@ -78,13 +78,11 @@ impl Room {
     fn update(&self, len: usize) -> Vec<f64> {
         let mut free = locked(&self.updates);
         let fits = (0..free.len()).filter(|&i| free[i].len() >= len);
-        match fits.min_by_key(|&i| free[i].len()) {
-            Some(best) => free.swap_remove(best),
-            None => {
-                drop(free);
-                vec![0.0; len]
-            }
+        if let Some(best) = fits.min_by_key(|&i| free[i].len()) {
+            return free.swap_remove(best);
         }
+        drop(free);
+        vec![0.0; len]
     }
 
     fn stack(&self) -> Vec<f64> {

@@ -171,7 +171,7 @@ impl Cholesky {
         let tree = self.symbolic.supernodes();
         let mut pieces = self.pieces(x);
         parallel::map_chunks(&mut pieces, 1, |_, pieces| {
-            pieces.iter_mut().for_each(|piece| self.forward(piece));
+            self.forward(&mut pieces[0]);
         });
         let sums: Vec<_> = pieces.into_iter().map(|piece| piece.at_beyond).collect();
         for (blocks, sums) in tree.pieces().iter().zip(sums) {
@@ -195,7 +195,7 @@ impl Cholesky {
             piece.at_beyond = known;
         }
         parallel::map_chunks(&mut pieces, 1, |_, pieces| {
-            pieces.iter_mut().for_each(|piece| self.backward(piece));
+            self.backward(&mut pieces[0]);
         });
     }
 

@@ -44,7 +44,7 @@ pub(super) fn refine(level: &Level<'_>, label: &mut [u32], regions: &mut Regions
         let (now, tree) = (&*label, &*regions);
         parallel::map_chunks(&mut bands, 1, |_, bands| {
             let members = |region| of(region).iter().chain(&joined[region as usize]);
-            bands.iter_mut().for_each(|band| band.improve(level, now, tree, members));
+            bands[0].improve(level, now, tree, members);
         });
         for change in bands.iter_mut().flat_map(|band| band.changes.drain(..)) {
             change.apply(level, label, regions, &mut joined);
