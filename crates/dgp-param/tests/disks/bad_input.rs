@@ -1,3 +1,5 @@
+//! What cannot be laid out, and how that is said.
+
 use std::ops::ControlFlow;
 
 use dgp_mesh::{DVec2, Progress, VertexId, shapes};

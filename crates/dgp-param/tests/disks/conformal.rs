@@ -1,3 +1,5 @@
+//! Conformal maps: what can be unrolled, order of convergence, pins.
+
 use dgp_mesh::{DVec2, DVec3, Progress, VertexId};
 use dgp_param::{Pin, distortion, least_squares_conformal};
 

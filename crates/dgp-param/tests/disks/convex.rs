@@ -1,3 +1,5 @@
+//! Maps to a convex outline: linear precision, folds, arc length, threads.
+
 use dgp_laplace::intrinsic::{IntrinsicOptions, intrinsic_delaunay};
 use dgp_mesh::{DVec2, DVec3, Progress, VertexId, VertexMap, shapes};
 use dgp_param::{

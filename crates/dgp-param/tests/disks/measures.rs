@@ -1,3 +1,5 @@
+//! Distortion of maps that are known, and crossings.
+
 use dgp_mesh::{DVec2, DVec3, Mesh, VertexMap};
 use dgp_param::{boundary_crossings, distortion, face_distortions};
 
