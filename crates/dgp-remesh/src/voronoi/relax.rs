@@ -2,11 +2,12 @@
 //! longer which vertices of the refined input are theirs.
 //!
 //! ```text
-//! x ← nearest point of the surface to  x + ω (∫ ρ y dy / ∫ ρ dy − x)      over the cell of x in its star
+//! x ← nearest point of the surface to  x + ω (1 − n nᵀ) (∫ ρ y dy / ∫ ρ dy − x)      over the cell of x in its star
 //! ```
 //!
-//! Between the steps edges are flipped whose opposite angles sum up to more than π. The cell of a vertex in a triangle
-//! around it ends at the perpendicular bisectors, or, where the triangle is obtuse, at the middle of its longest side.
+//! n is the normal of x. Between the steps edges are flipped whose opposite angles sum up to more than π. The cell of a
+//! vertex in a triangle around it ends at the perpendicular bisectors, or, where the triangle is obtuse, at the middle
+//! of its longest side.
 //!
 //! - Input: a triangulation near a surface, and vertices that stay where they are.
 //! - Cost: some microseconds for a vertex and step, in parallel.
@@ -81,7 +82,13 @@ pub(super) fn relax(
         let mesh = editor.mesh();
         let targets = mesh.map_vertices(|v| {
             let p = mesh.position(v);
-            if is_fixed[v.index()] { p } else { p + STEP * (cell_mean(mesh, &density, v) - p) }
+            if is_fixed[v.index()] {
+                return p;
+            }
+            let step = STEP * (cell_mean(mesh, &density, v) - p);
+            // The mean lies inside of what is convex: at the end of an ear it would make the ear shorter.
+            let normal: DVec3 = mesh.vertex_faces(v).map(|f| mesh.face_normal(f)).sum();
+            p + step - normal.normalize_or_zero() * step.dot(normal.normalize_or_zero())
         });
         let found = ground.nearest(targets.values())?;
         let mut moved: VertexMap<DVec3> = mesh.map_vertices(|v| {
